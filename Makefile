@@ -1,0 +1,51 @@
+# make results [CONFIG=mine.yaml] [CORES=2]   every dataset and figure of a run
+# make test                                   the test suite
+# make lint                                   formatting, style and types
+# make lock                                   resolve the dependencies anew
+PYTHON ?= python3
+CORES ?= 2
+CONFIG ?= config/default.yaml
+BIN = .venv/bin
+PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
+
+.PHONY: results test lint format docs lock clean
+results: .venv/run
+	$(BIN)/snakemake --cores $(CORES) --configfile $(CONFIG)
+
+test: .venv/dev
+	$(BIN)/pytest -n 2
+
+lint: .venv/dev
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/snakefmt --check Snakefile
+	$(BIN)/mypy
+
+format: .venv/dev
+	$(BIN)/ruff check --fix
+	$(BIN)/ruff format
+	$(BIN)/snakefmt Snakefile
+
+.venv/bin/python:
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "octsim needs Python 3.11 or later, this is " + sys.version)'
+	$(PYTHON) -m venv .venv
+
+# The package itself is installed in place: an edit of octsim/ needs no further command.
+.venv/run: .venv/bin/python requirements.lock pyproject.toml
+	$(PIP) install --require-hashes -r requirements.lock
+	$(PIP) install --no-deps --no-build-isolation -e .
+	touch $@
+
+.venv/dev: .venv/run requirements-dev.lock
+	$(PIP) install --require-hashes -r requirements-dev.lock
+	touch $@
+
+COMPILE = $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
+	--no-emit-index-url --no-emit-find-links --no-header --no-annotate pyproject.toml
+lock: .venv/bin/python
+	$(PIP) install uv
+	$(COMPILE) --group build -o requirements.lock
+	$(COMPILE) --group dev -c requirements.lock -o requirements-dev.lock
+
+clean:
+	rm -rf .venv results .snakemake

@@ -1,0 +1,73 @@
+"""The light that leaves the objective: where rays start on its disk, and where they head."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from octsim.config import Objective, Tracing
+
+GOLDEN_RATIO = (math.sqrt(5) - 1) / 2
+
+
+class Beam(NamedTuple):
+    """Rays aimed at the focus, N of them; referred to the focus, where their path is zero."""
+
+    vx: NDArray[np.float64]
+    """Unit direction, x component, (N,)."""
+    vy: NDArray[np.float64]
+    """Unit direction, y component, (N,)."""
+    vz: NDArray[np.float64]
+    """Unit direction, z component, positive, (N,)."""
+    amplitude: NDArray[np.float64]
+    """Amplitude at launch, (N,); sums to one."""
+
+
+def aperture_radius(objective: Objective, n_glass: float) -> float:
+    """Radius of the objective's disk, R = focus_distance · tan(asin(NA / n_glass)), in µm."""
+    return objective.focus_distance * math.tan(math.asin(objective.numerical_aperture / n_glass))
+
+
+def vogel_spiral(num: int, radius: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    r"""Place points evenly on a disk, as the seeds of a sunflower.
+
+    .. math:: \theta_j = 2\pi j \varphi, \quad r_j = R \sqrt{j / (N - 1)}
+
+    (thesis eq. (3), after Vogel 1978) with the golden ratio
+    :math:`\varphi = (\sqrt 5 - 1) / 2`; a single point is at the centre.
+
+    Parameters
+    ----------
+    num : int
+        Number of points, N.
+    radius : float
+        Radius of the disk, R.
+
+    Returns
+    -------
+    x, y : ndarray, shape (N,)
+        Positions, in the unit of `radius`.
+    """
+    j = np.arange(num)
+    angle = 2 * np.pi * j * GOLDEN_RATIO
+    distance = radius * np.sqrt(j / max(num - 1, 1))
+    return distance * np.cos(angle), distance * np.sin(angle)
+
+
+def aim(
+    x: NDArray[np.float64], y: NDArray[np.float64], focus_distance: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Unit vectors (vx, vy, vz) from points (x, y) on the objective plane to the focus above it.
+
+    They do not depend on the height of the focus, as the objective moves with it.
+    """
+    length = np.sqrt(x * x + y * y + focus_distance * focus_distance)
+    return -x / length, -y / length, focus_distance / length
+
+
+def vogel_beam(objective: Objective, tracing: Tracing, n_glass: float) -> Beam:
+    """Make the beam of the thesis: a Vogel spiral on the objective, each ray of amplitude 1/N."""
+    x, y = vogel_spiral(tracing.rays, aperture_radius(objective, n_glass))
+    vx, vy, vz = aim(x, y, objective.focus_distance)
+    return Beam(vx, vy, vz, np.full(tracing.rays, 1 / tracing.rays))

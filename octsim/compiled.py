@@ -1,0 +1,34 @@
+"""Compiling to machine code, kept on disk for as long as no source behind it changes."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+
+from octsim.provenance import source_digest
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def compiled(**options: Any) -> Callable[[Function], Function]:
+    """Compile a function when it is first called, without the interpreter's lock.
+
+    numba's own cache looks at the time of the function's file alone and would go on using old
+    formulas from other files; here the cache's folder is named after the digest of all of them.
+    Options are those of `numba.njit`.
+    """
+
+    def compile_(function: Function) -> Function:
+        folder = Path(__file__).parent / "__pycache__" / f"numba-{source_digest(function.__module__)}"
+        elsewhere = numba.config.CACHE_DIR
+        numba.config.CACHE_DIR = str(folder)
+        try:
+            dispatcher: Function = numba.njit(
+                cache=True, nogil=True, error_model="numpy", **options
+            )(function)
+        finally:
+            numba.config.CACHE_DIR = elsewhere
+        return dispatcher
+
+    return compile_

@@ -1,0 +1,173 @@
+"""Datasets: what each variable means, where a dataset came from, and files that appear whole."""
+
+import json
+import os
+from collections.abc import Mapping
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from octsim.config import Config
+from octsim.errors import DatasetError
+from octsim.provenance import source_digest
+
+MEANINGS: Mapping[str, tuple[str, str]] = {
+    # name: (units, long_name)
+    "amplitude": ("1", "amplitude"),
+    "centre": ("um", "focus of greatest intensity"),
+    "component": ("1", "component of the Fourier transform"),
+    "component_phase_slope": ("mrad/nm", "phase slope of each component"),
+    "depth": ("um", "optical depth, half of the optical path difference"),
+    "diameter": ("um", "diameter of the cylinder"),
+    "focus": ("um", "height of the focus above the glass"),
+    "fraction": ("1", "height of the focus over the diameter"),
+    "ideal_component": ("1", "strongest component for a spectrum cos(2ndk)"),
+    "ideal_phase_slope_standard_deviation": (
+        "mrad/nm",
+        "scatter of the phase slope about its mean, for a spectrum cos(2ndk)",
+    ),
+    "ideal_phase_slope": ("mrad/nm", "phase slope for a spectrum cos(2ndk)"),
+    "intensity": ("1", "intensity, relative to all launched light in phase"),
+    "intercept": ("um", "intercept of the focus law"),
+    "largest_deviation": ("mrad/nm", "largest deviation of the phase slope from the prediction"),
+    "largest_deviation_diameter": ("um", "diameter at which the deviation is largest"),
+    "magnitude": ("1", "magnitude of the component"),
+    "mean_ideal_phase_slope": ("mrad/nm", "mean phase slope for a spectrum cos(2ndk)"),
+    "mean_phase_slope": ("mrad/nm", "mean phase slope"),
+    "offset": ("1", "constant below the Gaussian"),
+    "optical_path_length": ("um", "optical path length from the focus to the detector"),
+    "outcome": ("1", "how a segment of ray ended, or why it was not traced"),
+    "outcomes": ("1", "number of segments of ray with each outcome"),
+    "phase": ("rad", "phase of the component, in (-pi, pi]"),
+    "phase_slope": ("mrad/nm", "phase slope of the strongest component"),
+    "phase_slope_standard_deviation": ("mrad/nm", "scatter of the phase slope about its mean"),
+    "predicted_phase_slope": ("mrad/nm", "predicted phase slope, n_neuron (k_min + k_max)"),
+    "rays_detected": ("1", "number of rays detected"),
+    "residual": ("1", "root mean square residual of the fit"),
+    "segments_traced": ("1", "number of straight pieces of ray traced"),
+    "slope": ("1", "slope of the focus law"),
+    "standard_deviation_from_ideal": (
+        "mrad/nm",
+        "scatter of the phase slope about that of a spectrum cos(2ndk)",
+    ),
+    "status": ("1", "whether the fit has a peak"),
+    "wavenumber": ("um-1", "wavenumber in vacuum, 2 pi / wavelength"),
+    "width": ("um", "standard deviation of the Gaussian"),
+}
+_STANDARD_ERROR = "_standard_error"
+_COMPRESSION = {"zlib": True, "complevel": 4, "shuffle": True}
+
+
+def _meaning(name: str) -> dict[str, str]:
+    if name.endswith(_STANDARD_ERROR):
+        units, long_name = MEANINGS[name.removesuffix(_STANDARD_ERROR)]
+        return {"units": units, "long_name": f"standard error of the {long_name}"}
+    units, long_name = MEANINGS[name]
+    return {"units": units, "long_name": long_name}
+
+
+def make(
+    stage: str,
+    config: Config,
+    title: str,
+    variables: Mapping[str, Any],
+    coordinates: Mapping[str, Any],
+    module: str,
+) -> xr.Dataset:
+    """Put a stage's results together with what they mean and what made them.
+
+    Parameters
+    ----------
+    stage : str
+        Name of the stage; the dataset's file is ``<stage>.nc``.
+    config : Config
+        The config that the results follow from.
+    title : str
+        One line on what is held.
+    variables, coordinates : mapping
+        As `xarray.Dataset` takes them; each name has its entry in `MEANINGS`.
+    module : str
+        Module that the stage's function stands in, for the digest of the sources.
+    """
+    dataset = xr.Dataset(variables, coordinates)
+    for name in map(str, dataset.variables):
+        dataset[name].attrs = _meaning(name) | dataset[name].attrs
+    file = f"results/{config.run}/{stage}.nc"
+    dataset.attrs = {
+        "Conventions": "CF-1.11",
+        "title": title,
+        "stage": stage,
+        "config": json.dumps(config.to_dict()),
+        "octsim_version": version("octsim"),
+        "source_digest": source_digest(module),
+        "creation_command": (
+            "save the attribute 'config' of this file as config.json, then: "
+            f".venv/bin/snakemake --cores 2 --configfile config.json {file}"
+        ),
+    }
+    return dataset
+
+
+def write(dataset: xr.Dataset, path: str | Path) -> None:
+    """Write a dataset so that the file is there whole or not at all.
+
+    Raises
+    ------
+    DatasetError
+        If it can't be written; what stood at `path` before is still there.
+    """
+    path = Path(path)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    encoding = {
+        name: (_COMPRESSION if variable.ndim and variable.dtype.kind in "iuf" else {})
+        | ({"_FillValue": None} if variable.dtype.kind == "f" else {})
+        for name, variable in dataset.variables.items()
+    }
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        dataset.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
+        temporary.replace(path)
+    except (OSError, RuntimeError) as error:
+        raise DatasetError(
+            f"{path}: can't be written ({_reason(error)}); what was there is unchanged"
+        ) from None
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def read(path: str | Path, stage: str) -> xr.Dataset:
+    """Read a dataset of a stage into memory.
+
+    Raises
+    ------
+    DatasetError
+        If the file is missing, damaged, or not a dataset of that stage.
+    """
+    path = Path(path)
+    remedy = f"move it away and run again to make {path.name} anew"
+    try:
+        dataset = xr.load_dataset(path, engine="netcdf4")
+    except FileNotFoundError:
+        raise DatasetError(f"{path}: not there; run the stage {stage} first") from None
+    except (OSError, RuntimeError, ValueError) as error:
+        raise DatasetError(f"{path}: can't be read ({_reason(error)}); {remedy}") from None
+    if dataset.attrs.get("stage") != stage:
+        raise DatasetError(f"{path}: not octsim's dataset of the stage {stage}; {remedy}")
+    return dataset
+
+
+def _reason(error: Exception) -> str:
+    reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return " ".join(reason.split())
+
+
+def flags(codes: type, values: np.ndarray) -> tuple[np.ndarray, dict[str, Any]]:
+    """Give the values of an enumeration with the CF attributes that name them."""
+    members = list(codes)
+    return np.asarray(values, np.int8), {
+        "flag_values": np.array([m.value for m in members], np.int8),
+        "flag_meanings": " ".join(m.name.lower() for m in members),
+    }

@@ -1,0 +1,17 @@
+"""What octsim says when something is not as it must be: one clear line, for a person."""
+
+
+class OctsimError(Exception):
+    """Something a user can put right; its text says what, where and how."""
+
+
+class ConfigError(OctsimError):
+    """The config cannot be used; a line for each problem."""
+
+
+class DatasetError(OctsimError):
+    """A stored dataset is missing, damaged or not what it should be."""
+
+
+class OctsimWarning(UserWarning):
+    """Something that a user should know but that stops nothing."""

@@ -1,0 +1,73 @@
+"""One look for all figures: colour-blind safe, told apart in grey, units on every axis."""
+
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import xarray as xr
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from octsim.errors import OctsimError
+
+# Okabe and Ito's colours; the order keeps neighbours apart in lightness too.
+BLUE, ORANGE, GREEN, BLACK = "#0072B2", "#E69F00", "#009E73", "#000000"
+PURPLE, VERMILION, SKY = "#CC79A7", "#D55E00", "#56B4E9"
+# green is the ideal spectrum's, black the prediction's
+_COMPONENTS = (BLUE, ORANGE, PURPLE, VERMILION, SKY)
+_SYMBOLS = {"um": "µm", "um-1": "1/µm", "1": ""}
+_LOOK: Mapping[str, Any] = {
+    "axes.grid": True,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "figure.constrained_layout.use": True,
+    "figure.dpi": 150,
+    "figure.figsize": (6.4, 4.0),
+    "font.size": 10,
+    "grid.alpha": 0.25,
+    "legend.frameon": False,
+    "lines.linewidth": 1.5,
+    "svg.hashsalt": "octsim",
+}
+
+
+def look() -> AbstractContextManager[None]:
+    """Give the context in which figures are made and saved."""
+    return mpl.rc_context(dict(_LOOK))
+
+
+def component_colour(component: int) -> str:
+    """Colour of a component of the Fourier transform, the same in every figure."""
+    return _COMPONENTS[(component - 1) % len(_COMPONENTS)]
+
+
+def label(variable: xr.DataArray, name: str | None = None) -> str:
+    """Axis label of a variable: its long name, or another, with its unit."""
+    text = name or str(variable.attrs["long_name"])
+    units = str(variable.attrs["units"])
+    symbol = _SYMBOLS.get(units, units)
+    text = text[:1].upper() + text[1:]
+    return f"{text} ({symbol})" if symbol else text
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure as its path's ending says, whole or not at all, the same bytes each time.
+
+    Raises
+    ------
+    OctsimError
+        If the file can't be written.
+    """
+    temporary = path.with_name(f".{path.stem}.tmp{path.suffix}")
+    metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        FigureCanvasAgg(figure)
+        figure.savefig(temporary, metadata=metadata)
+        temporary.replace(path)
+    except OSError as error:
+        raise OctsimError(f"{path}: can't be written ({error.strerror})") from None
+    finally:
+        temporary.unlink(missing_ok=True)

@@ -1,0 +1,234 @@
+"""From a user's overlay to a checked config, or to one clear line for each problem."""
+
+import difflib
+import json
+import warnings
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from octsim.config import Config, FocusLine, Range
+from octsim.errors import ConfigError, OctsimWarning
+from octsim.units import format_length
+
+
+def load_config(*overlays: str | Path | Mapping[str, Any]) -> Config:
+    """Lay overlays over the thesis's config and check the result.
+
+    Parameters
+    ----------
+    *overlays : path or mapping
+        YAML or JSON files, or what they would hold; a later one wins. Mappings merge deeply,
+        everything else replaces.
+
+    Returns
+    -------
+    Config
+        The whole config, frozen; lengths in µm.
+
+    Raises
+    ------
+    ConfigError
+        If a file can't be read, a key is unknown, or a value has the wrong type, lacks its unit or
+        is impossible. Its text has one line for each problem: key path, what was given, what to do.
+
+    Warns
+    -----
+    OctsimWarning
+        If the diameter step is so large that the unwrapped phase is ambiguous.
+
+    Examples
+    --------
+    >>> load_config({"scene": {"gap": "20 nm"}}).scene.gap
+    0.02
+    """
+    merged: dict[str, Any] = Config().to_dict()
+    for overlay in overlays:
+        merged = _merge(merged, overlay if isinstance(overlay, Mapping) else _read(Path(overlay)))
+    try:
+        config = Config.model_validate(merged)
+    except ValidationError as error:
+        raise ConfigError("\n".join(dict.fromkeys(map(_explain, error.errors())))) from None
+    problems = list(_impossible(config))
+    if problems:
+        raise ConfigError("\n".join(problems))
+    _warn_of_aliasing(config)
+    return config
+
+
+class _Loader(yaml.SafeLoader):
+    """YAML in which a key may stand only once."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        keys = [self.construct_object(key, deep=True) for key, _ in node.value]  # type: ignore[no-untyped-call]
+        for key in keys:
+            if keys.count(key) > 1:
+                raise yaml.constructor.ConstructorError(
+                    None, None, f"the key '{key}' stands twice", node.start_mark
+                )
+        return super().construct_mapping(node, deep)
+
+
+def _read(path: Path) -> Mapping[str, Any]:
+    try:
+        content = yaml.load(path.read_text(encoding="utf-8"), _Loader)  # noqa: S506 (a SafeLoader)
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "it is not text"
+        raise ConfigError(f"{path}: can't be read ({reason}); give a YAML file") from None
+    except yaml.YAMLError as error:
+        raise ConfigError(f"{path}: not YAML: {' '.join(str(error).split())}") from None
+    if content is None:
+        return {}
+    if not isinstance(content, Mapping):
+        raise ConfigError(
+            f"{path}: holds a {type(content).__name__}, not keys with values; "
+            "write it as in config/default.yaml"
+        )
+    return content
+
+
+def _merge(base: Mapping[str, Any], overlay: Mapping[str, Any]) -> dict[str, Any]:
+    merged = dict(base)
+    for key, value in overlay.items():
+        below = merged.get(key)
+        both = isinstance(below, Mapping) and isinstance(value, Mapping)
+        merged[key] = _merge(below, value) if both else value  # type: ignore[arg-type]
+    return merged
+
+
+def known_keys(model: type[BaseModel] | BaseModel = Config, prefix: str = "") -> Iterator[str]:
+    """Give the dotted path of every key of the config, sections before what they hold."""
+    model = model() if isinstance(model, type) else model
+    for name in type(model).model_fields:
+        yield prefix + name
+        value = getattr(model, name)
+        if isinstance(value, BaseModel):
+            yield from known_keys(value, f"{prefix}{name}.")
+    if isinstance(model, Config):
+        yield from (f"sweep.focus.{name}" for name in FocusLine.model_fields)
+
+
+def nearest_key(key: str) -> str:
+    """Give the known key that is most like `key`: in its own section, else by its last part."""
+    section, _, name = key.rpartition(".")
+    keys = list(known_keys())
+    siblings = {k.rpartition(".")[2]: k for k in keys if k.rpartition(".")[0] == section}
+    everywhere = {k.rpartition(".")[2]: k for k in reversed(keys)}
+    initials = {"".join(word[0] for word in k.split("_")): path for k, path in siblings.items()}
+    for candidates, likeness in ((initials, 1), (siblings, 0.6), (everywhere, 0.6), (siblings, 0)):
+        close = difflib.get_close_matches(name, candidates, n=1, cutoff=likeness)
+        if close:
+            return candidates[close[0]]
+    return difflib.get_close_matches(key, keys, n=1, cutoff=0)[0]
+
+
+def _explain(error: ErrorDetails) -> str:
+    tags = {"law", "line"} if error["loc"][:2] == ("sweep", "focus") else set()
+    path = ".".join(str(part) for part in error["loc"] if part not in tags)
+    if error["type"] == "extra_forbidden":
+        return f"{path}: unknown key; the nearest known one is {nearest_key(path)}"
+    if error["type"] == "missing":
+        return f"{path}: missing; it has no default, so give it a value"
+    message = error["msg"].removeprefix("Value error, ").replace("Input should", "it should")
+    if path == "run":
+        message = "it should be a plain name: letters, digits, '.', '_' and '-', no path"
+    elif error["type"] in {"model_type", "model_attributes_type"}:
+        message = "it should be a mapping of keys to values"
+    elif path == "sweep.focus":
+        message = "it should be 'law', or {slope: 0.581, intercept: 69 nm}"
+    elif "length" not in message and _is_length(path):
+        message += " um"
+    return f"{path}: {error['input']!r} given; {message}"
+
+
+def _is_length(path: str) -> bool:
+    value: Any = Config().to_dict()
+    for part in path.split("."):
+        value = value.get(part) if isinstance(value, dict) else None
+    return isinstance(value, str) and value.endswith(" um")
+
+
+def _ranges(model: BaseModel, prefix: str = "") -> Iterator[tuple[str, Range]]:
+    for name in type(model).model_fields:
+        value = getattr(model, name)
+        if isinstance(value, Range):
+            yield prefix + name, value
+        elif isinstance(value, BaseModel):
+            yield from _ranges(value, f"{prefix}{name}.")
+
+
+def highest_focus(config: Config) -> tuple[str, float]:
+    """Give the key that asks for the highest focus known before a run, and that focus in µm."""
+    law = config.focus_law
+    # corners suffice: a product of two ranges is greatest at one
+    law_foci = np.outer(
+        [law.diameters.start, law.diameters.stop], [law.fraction.start, law.fraction.stop]
+    )
+    foci = {
+        "focus_scan.focus.stop": config.focus_scan.focus.stop,
+        "focus_law.fraction.stop": float(law_foci.max()),
+    }
+    if isinstance(config.sweep.focus, FocusLine):
+        ends = np.array([config.sweep.diameters.start, config.sweep.diameters.stop])
+        line = config.sweep.focus.slope * ends + config.sweep.focus.intercept
+        foci["sweep.focus"] = float(line.max())
+    return max(foci.items(), key=lambda item: item[1])
+
+
+def _impossible(config: Config) -> Iterator[str]:
+    aperture, glass = config.objective.numerical_aperture, config.scene.refractive_index.glass
+    if not aperture < glass:
+        yield (
+            f"objective.numerical_aperture: {aperture} given; it must be below the index of glass, "
+            f"scene.refractive_index.glass = {glass}"
+        )
+    band = config.spectrum.wavelength
+    if not band.min < band.max:
+        yield (
+            f"spectrum.wavelength.min: {format_length(band.min)} given; it must be below "
+            f"spectrum.wavelength.max = {format_length(band.max)}"
+        )
+    for key, span in _ranges(config):
+        if not span.start < span.stop:
+            given = span.model_dump(mode="json")
+            yield (
+                f"{key}.start: {given['start']} given; it must be below {key}.stop = "
+                f"{given['stop']}"
+            )
+    key, focus = highest_focus(config)
+    distance = config.objective.focus_distance
+    if not distance > focus:
+        yield (
+            f"objective.focus_distance: {format_length(distance)} given; it must exceed every "
+            f"focus, and {key} asks for one at {format_length(focus)} (the objective lies in glass)"
+        )
+
+
+def _warn_of_aliasing(config: Config) -> None:
+    band, diameters = config.spectrum.wavelength, config.sweep.diameters
+    slope = config.scene.refractive_index.neuron * 2 * np.pi * (1 / band.min + 1 / band.max)
+    step = (diameters.stop - diameters.start) / (diameters.num - 1)
+    if step > np.pi / slope:
+        warnings.warn(
+            f"sweep.diameters: a step of {format_length(round(step, 6))} is above "
+            f"π/(n_neuron (k_min + k_max)) = {format_length(round(np.pi / slope, 6))}, so the "
+            "unwrapped phase is ambiguous and its slope can be wrong; raise sweep.diameters.num",
+            OctsimWarning,
+            stacklevel=3,
+        )
+
+
+def parts_of(config: Config, *keys: str) -> str:
+    """Give what stands under some dotted keys of a config, as canonical JSON."""
+    parts = {}
+    for key in keys:
+        part: Any = config.to_dict()
+        for name in key.split("."):
+            part = part[name]
+        parts[key] = part
+    return json.dumps(parts, sort_keys=True)

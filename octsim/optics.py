@@ -1,0 +1,116 @@
+"""Reflection, refraction and Fresnel coefficients: the only place where these formulas stand.
+
+Each function is plain Python on floats; compiled code calls the same source.
+"""
+
+import math
+from typing import NamedTuple
+
+from numba.extending import register_jitable
+
+
+class Vector(NamedTuple):
+    """A vector in space (x, y, z)."""
+
+    x: float
+    y: float
+    z: float
+
+
+@register_jitable
+def reflect(direction: Vector, normal: Vector, cos_i: float) -> Vector:
+    r"""Turn a direction by the law of reflection.
+
+    .. math:: \hat v_r = \hat v_i - 2 (\hat v_i \cdot \hat n) \hat n
+
+    (thesis §4.3.1), with :math:`\hat v_i \cdot \hat n = -\cos\theta_i`.
+
+    Parameters
+    ----------
+    direction : Vector
+        Unit vector along the incident ray.
+    normal : Vector
+        Unit normal on the side that the ray comes from.
+    cos_i : float
+        Cosine of the angle of incidence, ≥ 0.
+
+    Returns
+    -------
+    Vector
+        Unit vector along the reflected ray.
+    """
+    twice = 2 * cos_i
+    return Vector(
+        direction.x + twice * normal.x,
+        direction.y + twice * normal.y,
+        direction.z + twice * normal.z,
+    )
+
+
+@register_jitable
+def cos_transmitted_squared(n_i: float, n_t: float, cos_i: float) -> float:
+    r"""Square of the cosine of the angle of refraction; negative beyond the critical angle.
+
+    .. math:: \cos^2\theta_t = 1 - \eta^2 (1 - \cos^2\theta_i)
+                             = (1 - \eta)(1 + \eta) + \eta^2\cos^2\theta_i,
+              \quad \eta = n_i / n_t
+
+    Snell's law (thesis §4.3.1). The second form has no cancellation for :math:`\eta \le 1` and is
+    exactly :math:`\cos^2\theta_i` where the indices are equal.
+    """
+    eta = n_i / n_t
+    return (1 - eta) * (1 + eta) + eta * eta * cos_i * cos_i
+
+
+@register_jitable
+def refract(
+    direction: Vector, normal: Vector, n_i: float, n_t: float, cos_i: float, cos_t: float
+) -> Vector:
+    r"""Turn a direction by Snell's law.
+
+    .. math:: \hat v_t = -\cos\theta_t \hat n + \eta\, \hat n \times (\hat v_i \times \hat n)
+                       = \eta \hat v_i + (\eta\cos\theta_i - \cos\theta_t) \hat n
+
+    (thesis §4.3.1). Arguments as in `reflect`; `cos_t` is the cosine of the angle of refraction.
+    """
+    eta = n_i / n_t
+    along = eta * cos_i - cos_t
+    return Vector(
+        eta * direction.x + along * normal.x,
+        eta * direction.y + along * normal.y,
+        eta * direction.z + along * normal.z,
+    )
+
+
+@register_jitable
+def fresnel(n_i: float, n_t: float, cos_i: float, cos_t: float) -> tuple[float, float]:
+    r"""Amplitude coefficients of reflection and transmission for unpolarised light.
+
+    .. math::
+        r = \pm\sqrt{\tfrac12 (r_\parallel^2 + r_\perp^2)}, \quad
+        t = \sqrt{\tfrac12 (t_\parallel^2 + t_\perp^2)}
+
+    (thesis §4.3.2); r is negative for :math:`n_t > n_i`. Below the critical angle only: beyond it
+    r = 1 and nothing is transmitted.
+
+    Parameters
+    ----------
+    n_i, n_t : float
+        Refractive indices on the side of incidence and on the other.
+    cos_i, cos_t : float
+        Cosines of the angles of incidence and refraction, `cos_i` > 0, `cos_t` ≥ 0.
+
+    Returns
+    -------
+    r, t : float
+        Factors on the amplitude. Energy: r² + (n_t cos_t)/(n_i cos_i) t² = 1.
+    """
+    over_parallel = 1 / (n_t * cos_i + n_i * cos_t)
+    over_perpendicular = 1 / (n_i * cos_i + n_t * cos_t)
+    r_parallel = (n_t * cos_i - n_i * cos_t) * over_parallel
+    r_perpendicular = (n_i * cos_i - n_t * cos_t) * over_perpendicular
+    t_parallel = 2 * n_i * cos_i * over_parallel
+    t_perpendicular = 2 * n_i * cos_i * over_perpendicular
+    r = math.sqrt(0.5 * (r_parallel * r_parallel + r_perpendicular * r_perpendicular))
+    t = math.sqrt(0.5 * (t_parallel * t_parallel + t_perpendicular * t_perpendicular))
+    return (-r if n_t > n_i else r), t

@@ -1,0 +1,164 @@
+"""From spectra to phases and the phase slope (figures 9 to 12)."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy.signal import get_window
+
+from octsim.config import Config, Processing
+from octsim.datasets import make
+from octsim.spectrum import wavenumbers
+
+
+def centred(intensity: NDArray[np.float64], centre: str) -> NDArray[np.float64]:
+    """Subtract from spectra (..., K) their midpoint (max + min)/2, or their mean."""
+    if centre == "midpoint":
+        level = (intensity.max(axis=-1) + intensity.min(axis=-1)) / 2
+    else:
+        level = intensity.mean(axis=-1)
+    return intensity - level[..., np.newaxis]
+
+
+def windowed(intensity: NDArray[np.float64], window: str) -> NDArray[np.float64]:
+    """Multiply spectra (..., K) by a symmetric window of scipy.signal.windows."""
+    product: NDArray[np.float64] = intensity * get_window(
+        window, intensity.shape[-1], fftbins=False
+    )
+    return product
+
+
+def fourier_components(
+    intensity: NDArray[np.float64], processing: Processing
+) -> NDArray[np.complex128]:
+    """Take the discrete Fourier transform of spectra after centring and windowing (thesis §5).
+
+    Parameters
+    ----------
+    intensity : ndarray, shape (..., K)
+        Spectra over evenly spaced, increasing wavenumbers.
+    processing : Processing
+        What to subtract, and the window. The mean is subtracted last.
+
+    Returns
+    -------
+    ndarray, shape (..., K//2 + 1)
+        Complex components; a spectrum cos(2ndk) has phase 2nd k_min at its first sample.
+    """
+    prepared = windowed(centred(intensity, processing.centre), processing.window)
+    prepared -= prepared.mean(axis=-1, keepdims=True)
+    return np.fft.rfft(prepared, axis=-1)
+
+
+def optical_depths(wavenumber: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Optical depth nd (µm) at which cos(2ndk) falls on each component, shape (K//2 + 1,)."""
+    step = (wavenumber[-1] - wavenumber[0]) / (wavenumber.size - 1)
+    depths: NDArray[np.float64] = np.pi * np.fft.rfftfreq(wavenumber.size, step)
+    return depths
+
+
+class PhaseSlopes(NamedTuple):
+    """Phase slopes of a sweep over D diameters with C components, in rad/µm = mrad/nm."""
+
+    component: NDArray[np.int64]
+    """Strongest component, (D,); never the constant one, which has no phase."""
+    by_component: NDArray[np.float64]
+    """Slope of each component, (D, C)."""
+    strongest: NDArray[np.float64]
+    """Slope of the strongest component, (D,)."""
+
+
+def phase_slopes(
+    diameter: NDArray[np.float64], magnitude: NDArray[np.float64], phase: NDArray[np.float64]
+) -> PhaseSlopes:
+    """Differentiate phases over the diameter, by central differences of the unwrapped phase.
+
+    Parameters
+    ----------
+    diameter : ndarray, shape (D,)
+        Increasing diameters, µm.
+    magnitude, phase : ndarray, shape (D, C)
+        Magnitude and phase (rad) of each component.
+    """
+    component = 1 + magnitude[:, 1:].argmax(axis=1)
+    by_component = np.gradient(np.unwrap(phase, axis=0), diameter, axis=0)
+    strongest = np.take_along_axis(by_component, component[:, np.newaxis], axis=1)[:, 0]
+    return PhaseSlopes(component, by_component, strongest)
+
+
+def ideal_spectra(
+    n_neuron: float, diameter: NDArray[np.float64], wavenumber: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Spectra cos(2ndk) of two weak reflections a distance d apart (thesis §2.2), shape (D, K)."""
+    return np.cos(2 * n_neuron * np.outer(diameter, wavenumber))
+
+
+def predicted_phase_slope(n_neuron: float, wavenumber: NDArray[np.float64]) -> float:
+    """Phase slope n (k_min + k_max) (thesis eq. (2)), in rad/µm = mrad/nm."""
+    return float(n_neuron * (wavenumber[0] + wavenumber[-1]))
+
+
+def fourier(config: Config, spectra: xr.Dataset) -> xr.Dataset:
+    """Take the Fourier transform of each spectrum.
+
+    Returns
+    -------
+    Dataset
+        magnitude and phase (diameter, component), depth(component).
+    """
+    components = fourier_components(spectra["intensity"].values, config.processing)
+    dimensions = ("diameter", "component")
+    return make(
+        "fourier",
+        config,
+        "Fourier transform of the spectrum, for each diameter",
+        {"magnitude": (dimensions, np.abs(components)), "phase": (dimensions, np.angle(components))},
+        {
+            "diameter": spectra["diameter"].values,
+            "component": np.arange(components.shape[1]),
+            "depth": ("component", optical_depths(spectra["wavenumber"].values)),
+        },
+        __name__,
+    )
+
+
+def phase_slope(config: Config, transformed: xr.Dataset) -> xr.Dataset:
+    """Differentiate the phase over the diameter, and compare with the ideal and the prediction.
+
+    Returns
+    -------
+    Dataset
+        phase_slope, component and ideal_phase_slope (diameter), component_phase_slope(diameter,
+        component), predicted_phase_slope, and the thesis's summary figures as scalars.
+    """
+    diameter, k = transformed["diameter"].values, wavenumbers(config.spectrum)
+    n_neuron = config.scene.refractive_index.neuron
+    slopes = phase_slopes(diameter, transformed["magnitude"].values, transformed["phase"].values)
+    ideal = fourier_components(ideal_spectra(n_neuron, diameter, k), config.processing)
+    ideals = phase_slopes(diameter, np.abs(ideal), np.angle(ideal))
+    predicted = predicted_phase_slope(n_neuron, k)
+    deviation = slopes.strongest - predicted
+    largest = int(np.abs(deviation).argmax())
+    return make(
+        "phase_slope",
+        config,
+        "Phase slope: change of the spectrum's phase with the diameter",
+        {
+            "phase_slope": ("diameter", slopes.strongest),
+            "component": ("diameter", slopes.component),
+            "component_phase_slope": (("diameter", "component"), slopes.by_component),
+            "ideal_phase_slope": ("diameter", ideals.strongest),
+            "ideal_component": ("diameter", ideals.component),
+            "predicted_phase_slope": predicted,
+            "mean_phase_slope": slopes.strongest.mean(),
+            "phase_slope_standard_deviation": slopes.strongest.std(),
+            "mean_ideal_phase_slope": ideals.strongest.mean(),
+            "ideal_phase_slope_standard_deviation": ideals.strongest.std(),
+            "standard_deviation_from_ideal": (slopes.strongest - ideals.strongest).std(),
+            "largest_deviation": deviation[largest],
+            "largest_deviation_diameter": diameter[largest],
+        },
+        {"diameter": diameter},
+        __name__,
+    )
