@@ -7,6 +7,8 @@
 # Each rule names the config keys that it reads and the script whose code it runs: nothing else
 # makes it run again. Outputs are marked `update`: a script replaces them whole, at its end, so a
 # run that fails leaves what was there.
+import sys
+import warnings
 from pathlib import Path
 
 from octsim.errors import ConfigError
@@ -14,37 +16,40 @@ from octsim.loading import load_config, parts_of
 from octsim.provenance import source_digest
 
 try:
-    run = load_config(config)
+    with warnings.catch_warnings(record=True) as remarks:
+        # the files themselves, as snakemake's own reading lets a key stand twice
+        run = load_config(*workflow.configfiles, config)
 except ConfigError as error:
-    raise WorkflowError(str(error)) from None
+    sys.exit(f"octsim: {error}")
+for remark in remarks:
+    print(f"octsim: warning: {remark.message}", file=sys.stderr)
 
-SCRIPTS = Path(workflow.basedir) / "workflow" / "scripts"
 INSTRUMENT = ("scene", "objective", "detector", "tracing")
+SCRIPTS = Path(workflow.basedir) / "workflow" / "scripts"
 
 
 wildcard_constraints:
     run=run.run,
 
 
-def stage(name: str) -> str:
-    """Give the file of a stage's dataset."""
-    return f"results/{run.run}/{name}.nc"
+def made_from(script: str, *keys: str) -> dict[str, object]:
+    """Give what a rule's results follow from, besides its inputs: its code and what it reads.
+
+    One value for the whole, as snakemake compares a rule's params as a set, without their names.
+    """
+    return {"code": source_digest(SCRIPTS / f"{script}.py"), **parts_of(run, *keys)}
 
 
-def reads(*keys: str) -> str:
-    """Give what stands in the config under some keys, as a rule's parameter."""
-    return parts_of(run, *keys)
-
-
-def code(script: str) -> str:
-    """Give the digest of a script and of all of octsim that it uses, as a rule's parameter."""
-    return source_digest(SCRIPTS / f"{script}.py")
+onerror:
+    # snakemake notes a failed job's new params with the old output that it restores, and would
+    # take that for up to date: mark it incomplete
+    for failed in workflow.scheduler.failed:
+        workflow.persistence.started(failed)
 
 
 rule all:
     input:
-        stage("focus_scan"),
-        stage("phase_slope"),
+        expand("results/{run}/{stage}.nc", run=run.run, stage=("focus_scan", "phase_slope")),
         expand(
             "results/{run}/figures/figure_{number}.{form}",
             run=run.run,
@@ -62,8 +67,7 @@ rule focus_scan:
     benchmark:
         "results/{run}/benchmarks/focus_scan.tsv"
     params:
-        reads=reads(*INSTRUMENT, "spectrum", "focus_scan"),
-        code=code("focus_scan"),
+        made_from=made_from("focus_scan", *INSTRUMENT, "spectrum", "focus_scan"),
     message:
         "Scan the focus for one diameter"
     script:
@@ -79,8 +83,7 @@ rule focus_sweep:
     benchmark:
         "results/{run}/benchmarks/focus_sweep.tsv"
     params:
-        reads=reads(*INSTRUMENT, "spectrum", "focus_law"),
-        code=code("focus_sweep"),
+        made_from=made_from("focus_sweep", *INSTRUMENT, "spectrum", "focus_law"),
     message:
         "Measure the intensity over the focus for the diameters of the focus law"
     script:
@@ -98,7 +101,7 @@ rule focus_law:
     benchmark:
         "results/{run}/benchmarks/focus_law.tsv"
     params:
-        code=code("focus_law"),
+        made_from=made_from("focus_law"),
     message:
         "Fit Gaussians over the focus, and the focus law through their centres"
     script:
@@ -108,7 +111,7 @@ rule focus_law:
 rule detections:
     input:
         # a given focus needs no law, and is not traced again when the law changes
-        focus_law=stage("focus_law") if run.sweep.focus == "law" else [],
+        focus_law="results/{run}/focus_law.nc" if run.sweep.focus == "law" else [],
     output:
         update("results/{run}/detections.nc"),
     log:
@@ -117,8 +120,7 @@ rule detections:
     benchmark:
         "results/{run}/benchmarks/detections.tsv"
     params:
-        reads=reads(*INSTRUMENT, "sweep"),
-        code=code("detections"),
+        made_from=made_from("detections", *INSTRUMENT, "sweep"),
     message:
         "Trace the sweep over diameters"
     script:
@@ -135,8 +137,7 @@ rule spectra:
     benchmark:
         "results/{run}/benchmarks/spectra.tsv"
     params:
-        reads=reads("spectrum"),
-        code=code("spectra"),
+        made_from=made_from("spectra", "spectrum"),
     message:
         "Sum the detected rays to spectra"
     script:
@@ -154,8 +155,7 @@ rule phase_slope:
     benchmark:
         "results/{run}/benchmarks/phase_slope.tsv"
     params:
-        reads=reads("processing", "scene.refractive_index.neuron"),
-        code=code("phase_slope"),
+        made_from=made_from("phase_slope", "processing", "scene.refractive_index.neuron"),
     message:
         "Transform the spectra and differentiate their phase over the diameter"
     script:
@@ -181,7 +181,7 @@ rule figures:
     benchmark:
         "results/{run}/benchmarks/figures.tsv"
     params:
-        code=code("figures"),
+        made_from=made_from("figures"),
     message:
         "Draw the figures"
     script:

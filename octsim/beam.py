@@ -58,7 +58,7 @@ def vogel_spiral(num: int, radius: float) -> tuple[NDArray[np.float64], NDArray[
 def aim(
     x: NDArray[np.float64], y: NDArray[np.float64], focus_distance: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Unit vectors (vx, vy, vz) from points (x, y) on the objective plane to the focus above it.
+    """Give unit vectors (vx, vy, vz) from points (x, y) of the objective to the focus above it.
 
     They do not depend on the height of the focus, as the objective moves with it.
     """

@@ -20,15 +20,17 @@ def compiled(**options: Any) -> Callable[[Function], Function]:
     """
 
     def compile_(function: Function) -> Function:
-        folder = Path(__file__).parent / "__pycache__" / f"numba-{source_digest(function.__module__)}"
-        elsewhere = numba.config.CACHE_DIR
-        numba.config.CACHE_DIR = str(folder)
+        folder = (
+            Path(__file__).parent / "__pycache__" / f"numba-{source_digest(function.__module__)}"
+        )
+        settings: Any = numba.config
+        elsewhere, settings.CACHE_DIR = settings.CACHE_DIR, str(folder)
         try:
             dispatcher: Function = numba.njit(
                 cache=True, nogil=True, error_model="numpy", **options
             )(function)
         finally:
-            numba.config.CACHE_DIR = elsewhere
+            settings.CACHE_DIR = elsewhere
         return dispatcher
 
     return compile_

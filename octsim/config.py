@@ -69,91 +69,92 @@ class FractionRange(Range):
     num: Annotated[int, Field(ge=4, le=1_000_000)]
 
 
+def _key(default: object, description: str) -> Any:
+    # typed Any: a default is written as a user would write it, "5 nm", and validated
+    return Field(default, description=description)
+
+
 class RefractiveIndex(Section):
     """Refractive indices of the three media."""
 
-    glass: Index = Field(1.52, description="slide and immersion oil")
-    water: Index = Field(1.33, description="around the neuron")
-    neuron: Index = Field(1.39, description="the cylinder")
+    glass: Index = _key(1.52, "slide and immersion oil")
+    water: Index = _key(1.33, "around the neuron")
+    neuron: Index = _key(1.39, "the cylinder")
 
 
 class SceneConfig(Section):
     """What the light meets: a cylinder over a glass slide, in water."""
 
     refractive_index: RefractiveIndex = RefractiveIndex()
-    gap: Annotated[Length, Field(ge=0)] = Field(
-        "5 nm", description="water between the glass and the neuron"
-    )
+    gap: Annotated[Length, Field(ge=0)] = _key("5 nm", "water between the glass and the neuron")
 
 
 class Objective(Section):
     """The objective lens, an ideal thin one."""
 
-    numerical_aperture: Annotated[Number, Field(gt=0)] = Field(
-        1.2, description="below the index of glass"
+    numerical_aperture: Annotated[Number, Field(gt=0)] = _key(1.2, "below the index of glass")
+    focus_distance: PositiveLength = _key(
+        "300 um", "from the objective plane to the focus; beyond every focus"
     )
-    focus_distance: PositiveLength = Field(
-        "300 um", description="from the objective plane to the focus; beyond every focus"
-    )
-    magnification: Annotated[Number, Field(gt=0)] = Field(20.0, description="object to fibre")
+    magnification: Annotated[Number, Field(gt=0)] = _key(20.0, "object to fibre")
 
 
 class DetectorConfig(Section):
     """The fibre that collects the light."""
 
-    core_diameter: PositiveLength = Field(
-        "4.4 um", description="of the fibre; R_det = core_diameter / (2 magnification)"
+    core_diameter: PositiveLength = _key(
+        "4.4 um", "of the fibre; R_det = core_diameter / (2 magnification)"
     )
 
 
 class Tracing(Section):
     """How rays are placed and how far each is followed."""
 
-    scheme: Literal["vogel"] = Field("vogel", description="the thesis's sunflower spiral")
-    rays: Annotated[int, Field(ge=1, le=10_000_000)] = Field(3000, description="at the objective")
-    max_intersections: Annotated[int, Field(ge=1, le=30)] = Field(
-        11, description="meetings with the plane and the cylinder on one ray"
+    scheme: Literal["vogel"] = _key("vogel", "the thesis's sunflower spiral")
+    rays: Annotated[int, Field(ge=1, le=10_000_000)] = _key(3000, "at the objective")
+    max_intersections: Annotated[int, Field(ge=1, le=30)] = _key(
+        11, "meetings with the plane and the cylinder on one ray"
     )
-    min_amplitude: Annotated[Number, Field(ge=0, lt=1)] = Field(
-        0.0, description="a fainter ray is dropped; relative to the launch amplitude"
+    min_amplitude: Annotated[Number, Field(ge=0, lt=1)] = _key(
+        0.0, "a fainter ray is dropped; relative to the launch amplitude"
     )
 
 
 class Wavelengths(Section):
     """The band, in vacuum."""
 
-    min: PositiveLength = Field("650 nm", description="shortest wavelength")
-    max: PositiveLength = Field("900 nm", description="longest wavelength")
+    min: PositiveLength = _key("650 nm", "shortest wavelength")
+    max: PositiveLength = _key("900 nm", "longest wavelength")
 
 
 class Spectrum(Section):
     """The flat spectrum of the source and the samples taken of it."""
 
     wavelength: Wavelengths = Wavelengths()
-    samples: Annotated[int, Field(ge=2, le=1_000_000)] = Field(
-        1000, description="wavenumbers, evenly spaced, both ends included"
+    samples: Annotated[int, Field(ge=2, le=1_000_000)] = _key(
+        1000, "wavenumbers, evenly spaced, both ends included"
     )
 
 
 class FocusScan(Section):
     """Figure 6: one diameter, many foci."""
 
-    diameter: PositiveLength = Field("2 um", description="of the cylinder")
-    focus: FocusRange = Field(
+    diameter: PositiveLength = _key("2 um", "of the cylinder")
+    focus: FocusRange = _key(
         {"start": "-1 um", "stop": "4 um", "num": 501},
-        description="height of the focus above the glass",
+        "height of the focus above the glass",
     )
 
 
 class FocusLawConfig(Section):
     """Figure 7: the focus of greatest intensity for some diameters, and the line through them."""
 
-    diameters: DiameterRange = Field(
-        {"start": "0.8 um", "stop": "2.4 um", "num": 9}, description="of the cylinder"
+    diameters: DiameterRange = _key(
+        {"start": "0.8 um", "stop": "2.4 um", "num": 9}, "of the cylinder"
     )
-    fraction: FractionRange = Field(
+    fraction: FractionRange = _key(
         {"start": 0.4, "stop": 0.8, "num": 41},
-        description="foci tried, as fractions of the diameter",
+        "foci tried, as fractions of the diameter",
     )
 
 
@@ -171,15 +172,13 @@ def _focus_kind(value: object) -> str:
 class Sweep(Section):
     """Figures 8 to 12: the diameters whose spectra are made."""
 
-    diameters: DiameterRange = Field(
-        {"start": "1 um", "stop": "2 um", "num": 151}, description="of the cylinder"
+    diameters: DiameterRange = _key(
+        {"start": "1 um", "stop": "2 um", "num": 151}, "of the cylinder"
     )
     focus: Annotated[
         Annotated[Literal["law"], Tag("law")] | Annotated[FocusLine, Tag("line")],
         Discriminator(_focus_kind),
-    ] = Field(
-        "law", description="law (the fitted one), or {slope: 0.581, intercept: 69 nm}"
-    )
+    ] = _key("law", "law (the fitted one), or {slope: 0.581, intercept: 69 nm}")
 
 
 Window = Literal[
@@ -191,18 +190,18 @@ Window = Literal[
 class Processing(Section):
     """From a spectrum to a phase."""
 
-    estimator: Literal["fft"] = Field("fft", description="the thesis's Fourier transform")
-    centre: Literal["midpoint", "mean"] = Field(
-        "midpoint", description="what is subtracted before the window: (max + min)/2, or the mean"
+    estimator: Literal["fft"] = _key("fft", "the thesis's Fourier transform")
+    centre: Literal["midpoint", "mean"] = _key(
+        "midpoint", "what is subtracted before the window: (max + min)/2, or the mean"
     )
-    window: Window = Field("hamming", description="a symmetric window of scipy.signal.windows")
+    window: Window = _key("hamming", "a symmetric window of scipy.signal.windows")
 
 
 class Config(Section):
     """A whole run. Every value has the thesis's as its default."""
 
-    run: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=100)] = Field(
-        "thesis", description="name of the run: datasets and figures go to results/<run>/"
+    run: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=100)] = _key(
+        "thesis", "name of the run: datasets and figures go to results/<run>/"
     )
     scene: SceneConfig = SceneConfig()
     objective: Objective = Objective()

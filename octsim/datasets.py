@@ -1,17 +1,19 @@
 """Datasets: what each variable means, where a dataset came from, and files that appear whole."""
 
 import json
-import os
 from collections.abc import Mapping
+from enum import IntEnum
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from octsim.config import Config
 from octsim.errors import DatasetError
+from octsim.files import reason, whole
 from octsim.provenance import source_digest
 
 MEANINGS: Mapping[str, tuple[str, str]] = {
@@ -116,26 +118,16 @@ def write(dataset: xr.Dataset, path: str | Path) -> None:
 
     Raises
     ------
-    DatasetError
+    FileError
         If it can't be written; what stood at `path` before is still there.
     """
-    path = Path(path)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     encoding = {
         name: (_COMPRESSION if variable.ndim and variable.dtype.kind in "iuf" else {})
         | ({"_FillValue": None} if variable.dtype.kind == "f" else {})
         for name, variable in dataset.variables.items()
     }
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+    with whole(Path(path)) as temporary:
         dataset.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
-        temporary.replace(path)
-    except (OSError, RuntimeError) as error:
-        raise DatasetError(
-            f"{path}: can't be written ({_reason(error)}); what was there is unchanged"
-        ) from None
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def read(path: str | Path, stage: str) -> xr.Dataset:
@@ -153,18 +145,15 @@ def read(path: str | Path, stage: str) -> xr.Dataset:
     except FileNotFoundError:
         raise DatasetError(f"{path}: not there; run the stage {stage} first") from None
     except (OSError, RuntimeError, ValueError) as error:
-        raise DatasetError(f"{path}: can't be read ({_reason(error)}); {remedy}") from None
+        raise DatasetError(f"{path}: can't be read ({reason(error)}); {remedy}") from None
     if dataset.attrs.get("stage") != stage:
         raise DatasetError(f"{path}: not octsim's dataset of the stage {stage}; {remedy}")
     return dataset
 
 
-def _reason(error: Exception) -> str:
-    reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-    return " ".join(reason.split())
-
-
-def flags(codes: type, values: np.ndarray) -> tuple[np.ndarray, dict[str, Any]]:
+def flags(
+    codes: type[IntEnum], values: NDArray[np.int64]
+) -> tuple[NDArray[np.int8], dict[str, Any]]:
     """Give the values of an enumeration with the CF attributes that name them."""
     members = list(codes)
     return np.asarray(values, np.int8), {

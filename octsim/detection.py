@@ -10,7 +10,6 @@ from octsim.beam import aperture_radius
 from octsim.config import Config
 from octsim.optics import Vector
 
-
 # A ray sent back to the rim itself (a focus on the glass does that) is within it, however the last
 # digit is rounded.
 RIM = 1 + 1e-12

@@ -15,3 +15,7 @@ class DatasetError(OctsimError):
 
 class OctsimWarning(UserWarning):
     """Something that a user should know but that stops nothing."""
+
+
+class FileError(OctsimError):
+    """A file can't be written."""

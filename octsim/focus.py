@@ -43,8 +43,16 @@ def gaussian(
     focus: NDArray[np.float64], centre: float, width: float, amplitude: float, offset: float
 ) -> NDArray[np.float64]:
     """Gaussian plus a constant, offset + amplitude · exp(−(z − centre)² / (2 width²))."""
-    value: NDArray[np.float64] = offset + amplitude * np.exp(-((focus - centre) ** 2) / (2 * width**2))
+    value: NDArray[np.float64] = offset + amplitude * np.exp(
+        -((focus - centre) ** 2) / (2 * width**2)
+    )
     return value
+
+
+def interior_peaks(level: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Give the positions, not the first or the last, whose value is above its neighbours'."""
+    inner = level[1:-1]
+    return 1 + np.flatnonzero((inner > level[:-2]) & (inner >= level[2:]))
 
 
 def fit_gaussian(focus: NDArray[np.float64], intensity: NDArray[np.float64]) -> GaussianFit:
@@ -61,13 +69,14 @@ def fit_gaussian(focus: NDArray[np.float64], intensity: NDArray[np.float64]) -> 
         The fit, with a named status.
     """
     nothing = np.full(4, np.nan)
-    # least squares is done in units of the range and the peak, so that its tolerances mean something
+    # in units of the range and the peak, so that the tolerances mean something
     reach = focus[-1] - focus[0]
     low, height = intensity.min(), np.ptp(intensity)
-    if not height > 0:
+    peaks = interior_peaks(intensity)
+    if peaks.size == 0:
         return GaussianFit(nothing, nothing, np.nan, FitStatus.NO_INTERIOR_PEAK)
     position, level = (focus - focus[0]) / reach, (intensity - low) / height
-    start = [position[level.argmax()], 0.25, 1.0, 0.0]
+    start = [position[peaks[level[peaks].argmax()]], 0.25, 1.0, 0.0]
     tolerance = 1e-14
     try:
         with np.errstate(over="ignore", under="ignore"), warnings.catch_warnings():

@@ -1,7 +1,6 @@
 """From a user's overlay to a checked config, or to one clear line for each problem."""
 
 import difflib
-import json
 import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -65,7 +64,7 @@ class _Loader(yaml.SafeLoader):
     """YAML in which a key may stand only once."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        keys = [self.construct_object(key, deep=True) for key, _ in node.value]  # type: ignore[no-untyped-call]
+        keys = [self.construct_object(key, deep=True) for key, _ in node.value]
         for key in keys:
             if keys.count(key) > 1:
                 raise yaml.constructor.ConstructorError(
@@ -76,7 +75,7 @@ class _Loader(yaml.SafeLoader):
 
 def _read(path: Path) -> Mapping[str, Any]:
     try:
-        content = yaml.load(path.read_text(encoding="utf-8"), _Loader)  # noqa: S506 (a SafeLoader)
+        content = yaml.load(path.read_text(encoding="utf-8"), _Loader)
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not text"
         raise ConfigError(f"{path}: can't be read ({reason}); give a YAML file") from None
@@ -96,8 +95,9 @@ def _merge(base: Mapping[str, Any], overlay: Mapping[str, Any]) -> dict[str, Any
     merged = dict(base)
     for key, value in overlay.items():
         below = merged.get(key)
-        both = isinstance(below, Mapping) and isinstance(value, Mapping)
-        merged[key] = _merge(below, value) if both else value  # type: ignore[arg-type]
+        if isinstance(below, Mapping) and isinstance(value, Mapping):
+            value = _merge(below, value)
+        merged[key] = value
     return merged
 
 
@@ -223,12 +223,12 @@ def _warn_of_aliasing(config: Config) -> None:
         )
 
 
-def parts_of(config: Config, *keys: str) -> str:
-    """Give what stands under some dotted keys of a config, as canonical JSON."""
+def parts_of(config: Config, *keys: str) -> dict[str, object]:
+    """Give what stands under some dotted keys of a config, as plain data."""
     parts = {}
     for key in keys:
         part: Any = config.to_dict()
         for name in key.split("."):
             part = part[name]
         parts[key] = part
-    return json.dumps(parts, sort_keys=True)
+    return parts

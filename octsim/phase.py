@@ -18,7 +18,8 @@ def centred(intensity: NDArray[np.float64], centre: str) -> NDArray[np.float64]:
         level = (intensity.max(axis=-1) + intensity.min(axis=-1)) / 2
     else:
         level = intensity.mean(axis=-1)
-    return intensity - level[..., np.newaxis]
+    without: NDArray[np.float64] = intensity - level[..., np.newaxis]
+    return without
 
 
 def windowed(intensity: NDArray[np.float64], window: str) -> NDArray[np.float64]:
@@ -113,7 +114,10 @@ def fourier(config: Config, spectra: xr.Dataset) -> xr.Dataset:
         "fourier",
         config,
         "Fourier transform of the spectrum, for each diameter",
-        {"magnitude": (dimensions, np.abs(components)), "phase": (dimensions, np.angle(components))},
+        {
+            "magnitude": (dimensions, np.abs(components)),
+            "phase": (dimensions, np.angle(components)),
+        },
         {
             "diameter": spectra["diameter"].values,
             "component": np.arange(components.shape[1]),

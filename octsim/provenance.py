@@ -8,36 +8,31 @@ from pathlib import Path
 _PACKAGE = Path(__file__).parent
 
 
-def source_digest(*sources: str | Path) -> str:
-    """Digest Python sources and the modules of this package that they import, at any depth.
+def source_digest(source: str | Path) -> str:
+    """Digest a Python source and all that it imports of this package and of its own folder.
 
     Comments, docstrings and formatting do not change it; a changed constant does.
 
     Parameters
     ----------
-    *sources : str or path
-        Names of modules of this package (``"octsim.focus"``) or paths of scripts.
+    source : str or path
+        Name of a module of this package (``"octsim.focus"``) or path of a script.
 
     Returns
     -------
     str
         Twelve hexadecimal digits of a SHA-256.
     """
-    scripts = [source for source in sources if isinstance(source, Path)]
-    waiting = [source for source in sources if isinstance(source, str)]
-    trees = [_tree(script) for script in scripts]
-    waiting.extend(name for tree, _ in trees for name in tree)
-    modules: dict[str, str] = {}
+    waiting = [_module_path(source) if isinstance(source, str) else source]
+    dumps: dict[Path, str] = {}
     while waiting:
-        name = waiting.pop()
-        if name not in modules:
-            imported, modules[name] = _tree(_module_path(name))
+        path = waiting.pop()
+        if path not in dumps:
+            imported, dumps[path] = _syntax_tree(path)
             waiting.extend(imported)
     digest = hashlib.sha256()
-    for _, dump in trees:
-        digest.update(dump.encode())
-    for name in sorted(modules):
-        digest.update(f"{name}\n{modules[name]}\n".encode())
+    for path in sorted(dumps, key=lambda path: (path.parent.name, path.name)):
+        digest.update(f"{path.parent.name}/{path.name}\n{dumps[path]}\n".encode())
     return digest.hexdigest()[:12]
 
 
@@ -47,20 +42,20 @@ def _module_path(name: str) -> Path:
 
 
 @cache
-def _tree(path: Path) -> tuple[tuple[str, ...], str]:
-    """Give the modules of this package that a file imports, and its syntax tree as text."""
+def _syntax_tree(path: Path) -> tuple[tuple[Path, ...], str]:
+    """Give the files that a file imports, of this package and its folder, and its tree as text."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    imported = []
+    names: list[str] = []
     for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("octsim."):
-            imported.append(node.module or "")
-        elif isinstance(node, ast.ImportFrom) and node.module == "octsim":
-            imported.extend(f"octsim.{alias.name}" for alias in node.names)
+        if isinstance(node, ast.ImportFrom):
+            names.append(node.module or "")
         elif isinstance(node, ast.Import):
-            imported.extend(a.name for a in node.names if a.name.startswith("octsim."))
+            names.extend(alias.name for alias in node.names)
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
             node.body = [part for part in node.body if not _is_text(part)] or [ast.Pass()]
-    return tuple(imported), ast.dump(tree)
+    own = [_module_path(name) for name in names if name.startswith("octsim.")]
+    beside = [path.with_name(f"{name}.py") for name in names if path.parent != _PACKAGE]
+    return (*own, *(file for file in beside if file.is_file())), ast.dump(tree)
 
 
 def _is_text(node: ast.stmt) -> bool:

@@ -22,9 +22,7 @@ def tracer(config: Config) -> Callable[[float, float], Detections]:
     def at(diameter: float, focus: float) -> Detections:
         scene = neuron_on_glass(config.scene, diameter)
         tracing = config.tracing
-        return trace(
-            scene, beam, detector, focus, tracing.max_intersections, tracing.min_amplitude
-        )
+        return trace(scene, beam, detector, focus, tracing.max_intersections, tracing.min_amplitude)
 
     return at
 

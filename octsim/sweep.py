@@ -103,9 +103,7 @@ def spectra(config: Config, detected: xr.Dataset, threads: int = 1) -> xr.Datase
     ends = np.cumsum(detected["rays_detected"].values)[:-1]
     amplitudes = np.split(detected["amplitude"].values, ends)
     paths = np.split(detected["optical_path_length"].values, ends)
-    spectrum = each(
-        lambda rays: intensity(*rays, k), zip(amplitudes, paths, strict=True), threads
-    )
+    spectrum = each(lambda rays: intensity(*rays, k), zip(amplitudes, paths, strict=True), threads)
     return make(
         "spectra",
         config,

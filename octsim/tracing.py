@@ -129,14 +129,12 @@ def nearest_surface(
 
 @register_jitable
 def normal_towards(surfaces: Surfaces, s: int, medium: int, position: Vector) -> Vector:
-    """Unit normal of surface `s` at a position on it, on the side of `medium`."""
+    """Give the unit normal of surface `s` at a position on it, on the side of `medium`."""
     side = -1.0 if medium == surfaces.inner[s] else 1.0
     if surfaces.shape[s] == Shape.PLANE:
         return Vector(0.0, 0.0, side)
     scale = side / surfaces.radius[s]
-    return Vector(
-        (position.x - surfaces.x[s]) * scale, 0.0, (position.z - surfaces.z[s]) * scale
-    )
+    return Vector((position.x - surfaces.x[s]) * scale, 0.0, (position.z - surfaces.z[s]) * scale)
 
 
 @compiled()
@@ -174,15 +172,11 @@ def _trace(
             along = Vector(stack.vx[top], stack.vy[top], stack.vz[top])
             a, path_length = stack.amplitude[top], stack.optical_path_length[top]
             medium, meetings, code = stack.medium[top], stack.meetings[top], stack.path[top]
-            s, distance, cos_i = nearest_surface(
-                surfaces, medium, stack.surface[top], start, along
-            )
+            s, distance, cos_i = nearest_surface(surfaces, medium, stack.surface[top], start, along)
             if s == NOWHERE:
-                outcome = Outcome.ESCAPED
+                outcome: int = Outcome.ESCAPED
                 if medium == Medium.GLASS and along.z < 0:
-                    outcome, weight, to_fibre = detect(
-                        detector, focus, index[medium], start, along
-                    )
+                    outcome, weight, to_fibre = detect(detector, focus, index[medium], start, along)
                     if outcome == Outcome.DETECTED:
                         if detected == ray.size:
                             ray = np.concatenate((ray, np.empty_like(ray)))

@@ -43,7 +43,9 @@ def parse_length(text: object) -> float:
     match = _LENGTH.fullmatch(text) if isinstance(text, str) else None
     if match is None:
         bare = isinstance(text, int | float) or (isinstance(text, str) and _NUMBER.fullmatch(text))
-        reason = "a length needs its unit" if bare and not isinstance(text, bool) else "not a length"
+        reason = (
+            "a length needs its unit" if bare and not isinstance(text, bool) else "not a length"
+        )
         raise ValueError(f"{reason}; {_EXAMPLES}")
     number, unit = match.groups()
     try:

@@ -25,7 +25,7 @@ def along(position: Vector, direction: Vector, distance: float) -> Vector:
 @given(coordinates, coordinates, coordinates, coordinates, coordinates)
 def test_a_ray_ends_on_the_plane_it_heads_for(
     height: float, z: float, vx: float, vy: float, vz: float
-):
+) -> None:
     position, direction = Vector(0.0, 0.0, z), unit(vx, vy, vz)
     assume(abs(direction.z) > 1e-3)
     above = z > height
@@ -36,7 +36,7 @@ def test_a_ray_ends_on_the_plane_it_heads_for(
         assert distance == math.inf
 
 
-def test_a_ray_along_a_plane_never_meets_it():
+def test_a_ray_along_a_plane_never_meets_it() -> None:
     for above in (True, False):
         assert meet_plane(0.0, above, Vector(0.0, 0.0, 1.0), Vector(1.0, 0.0, 0.0)) == math.inf
 
@@ -49,8 +49,8 @@ def test_a_ray_along_a_plane_never_meets_it():
 )
 def test_a_ray_enters_the_cylinder_on_its_near_side_and_leaves_on_its_far_side(
     turn: float, away: float, offset: float, tilt: float
-):
-    # a ray that starts `away` from the axis, in any direction of approach, and passes it at `offset`
+) -> None:
+    # a ray that starts `away` from the axis, in any direction, and passes it at `offset`
     radius, x0, z0 = 1.5, 0.3, -0.2
     c, s = math.cos(turn), math.sin(turn)
     position = Vector(x0 - away * c - offset * s, 0.7, z0 - away * s + offset * c)
@@ -69,7 +69,7 @@ def test_a_ray_enters_the_cylinder_on_its_near_side_and_leaves_on_its_far_side(
 
 
 @given(coordinates, coordinates)
-def test_a_ray_misses_exactly_when_it_passes_beside(x: float, vx: float):
+def test_a_ray_misses_exactly_when_it_passes_beside(x: float, vx: float) -> None:
     position, direction = Vector(x, 0.0, -3.0), unit(vx, 0.4, 1.0)
     # the ray's distance from the axis (0, 0), in the cross section
     offset = abs(x * direction.z + 3.0 * direction.x) / math.hypot(direction.x, direction.z)
@@ -78,14 +78,14 @@ def test_a_ray_misses_exactly_when_it_passes_beside(x: float, vx: float):
     assert (distance == math.inf) == (offset > 1)
 
 
-def test_a_tangent_ray_and_a_cylinder_behind_are_missed():
+def test_a_tangent_ray_and_a_cylinder_behind_are_missed() -> None:
     up = Vector(0.0, 0.0, 1.0)
     assert enter_cylinder(0.0, 0.0, 1.0, Vector(1.0, 0.0, -3.0), up)[0] == math.inf
     assert enter_cylinder(0.0, 0.0, 1.0, Vector(0.0, 0.0, 3.0), up)[0] == math.inf
     assert cross_cylinder(0.0, 0.0, 1.0, Vector(0.0, 0.0, 1.0), up)[0] == math.inf
 
 
-def test_a_ray_on_the_axis_crosses_the_whole_diameter():
+def test_a_ray_on_the_axis_crosses_the_whole_diameter() -> None:
     up = Vector(0.0, 0.0, 1.0)
     assert enter_cylinder(0.0, 0.7, 0.7, Vector(0.0, 0.0, 0.0), up) == (0.0, 1.0)
     assert cross_cylinder(0.0, 0.7, 0.7, Vector(0.0, 0.0, 0.0), up) == (1.4, 1.0)

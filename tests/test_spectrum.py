@@ -11,7 +11,7 @@ from octsim.loading import load_config
 from octsim.spectrum import intensity, wavenumbers
 
 
-def test_wavenumbers_are_even_and_hold_both_ends():
+def test_wavenumbers_are_even_and_hold_both_ends() -> None:
     k = wavenumbers(load_config().spectrum)
     assert k.size == 1000
     assert (k[0], k[-1]) == (2 * np.pi / 0.9, 2 * np.pi / 0.65)
@@ -19,7 +19,9 @@ def test_wavenumbers_are_even_and_hold_both_ends():
 
 
 @given(st.floats(-1, 1), st.floats(-1, 1), st.floats(-20, 20))
-def test_two_beams_interfere_as_in_equation_1(first: float, second: float, difference: float):
+def test_two_beams_interfere_as_in_equation_1(
+    first: float, second: float, difference: float
+) -> None:
     k = np.linspace(6.98, 9.67, 500)
     paths = np.array([0.3, 0.3 + difference])
     expected = first**2 + second**2 + 2 * first * second * np.cos(k * difference)
@@ -27,7 +29,7 @@ def test_two_beams_interfere_as_in_equation_1(first: float, second: float, diffe
 
 
 @pytest.mark.parametrize("num", [2, 3, 1000, 100_000])
-def test_the_sum_is_exact_to_rounding(num: int):
+def test_the_sum_is_exact_to_rounding(num: int) -> None:
     rng = np.random.default_rng(7)
     amplitude, path = rng.normal(size=400), rng.uniform(-30, 30, 400)
     k = np.linspace(6.98, 9.67, num)
@@ -38,5 +40,5 @@ def test_the_sum_is_exact_to_rounding(num: int):
         assert summed[i] == pytest.approx(real**2 + imaginary**2, abs=1e-11 * summed.max())
 
 
-def test_no_light_is_a_dark_spectrum():
+def test_no_light_is_a_dark_spectrum() -> None:
     assert np.array_equal(intensity(np.empty(0), np.empty(0), np.linspace(7, 9, 10)), np.zeros(10))

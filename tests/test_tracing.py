@@ -1,6 +1,7 @@
 """The ray tree against a slow literal one, closed forms, symmetry and what is conserved."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -76,8 +77,8 @@ SCENES = {
 
 @pytest.mark.parametrize(("overlay", "diameter", "focus"), SCENES.values(), ids=SCENES)
 def test_the_tree_matches_the_literal_one_ray_for_ray(
-    overlay: dict, diameter: float, focus: float
-):
+    overlay: dict[str, Any], diameter: float, focus: float
+) -> None:
     config = load_config({"tracing": {"rays": 400}}, overlay)
     assert assert_same_rays(config, diameter, focus) > 0
 
@@ -96,7 +97,7 @@ def test_the_tree_matches_the_literal_one_ray_for_ray(
 def test_the_tree_matches_the_literal_one_in_any_scene(
     n_glass: float, n_water: float, n_neuron: float, gap: float,
     diameter: float, focus: float, aperture: float, core: float,
-):  # fmt: skip
+) -> None:  # fmt: skip
     # At a focus of exactly 0 the rim ray returns to the rim itself, and with NA = n_water it runs
     # along the plane: rounding decides there, in both tracers.
     assume(abs(focus) > 1e-3)
@@ -115,13 +116,13 @@ def test_the_tree_matches_the_literal_one_in_any_scene(
     assert_same_rays(config, diameter, focus)
 
 
-def test_segments_are_counted_as_in_the_literal_tree():
+def test_segments_are_counted_as_in_the_literal_tree() -> None:
     config = load_config({"tracing": {"rays": 300}})
     fast, slow = tracer(config)(1.4, 0.882), literal(config, 1.4, 0.882)
     assert fast.segments == slow.segments
 
 
-def test_every_segment_ends_in_one_way():
+def test_every_segment_ends_in_one_way() -> None:
     config = load_config(
         {"tracing": {"rays": 500, "min_amplitude": 0.01}, "objective": {"numerical_aperture": 1.5}}
     )
@@ -140,7 +141,7 @@ def axial(max_intersections: int = 11) -> dict[str, tuple[float, float]]:
     return {path: v for (_, path), v in by_ray_and_path(tracer(config)(1.4, 0.8)).items()}
 
 
-def test_axial_paths_have_the_lengths_and_amplitudes_of_parallel_plates():
+def test_axial_paths_have_the_lengths_and_amplitudes_of_parallel_plates() -> None:
     found = axial()
     n_g, n_w, n_n = 1.52, 1.33, 1.39
     (r_g, t_g), (_, t_w) = fresnel(n_g, n_w, 1, 1), fresnel(n_w, n_g, 1, 1)
@@ -157,13 +158,13 @@ def test_axial_paths_have_the_lengths_and_amplitudes_of_parallel_plates():
         assert found[path] == pytest.approx((amplitude, length), rel=1e-14), path
 
 
-def test_a_ray_that_met_just_the_allowed_surfaces_is_detected():
+def test_a_ray_that_met_just_the_allowed_surfaces_is_detected() -> None:
     assert "PT CT CR CT PT" in axial(max_intersections=5)
     assert "PT CT CR CT PT" not in axial(max_intersections=4)
     assert axial(max_intersections=1).keys() == {"PR"}
 
 
-def test_axial_amplitudes_keep_the_energy_of_a_stack_of_plates():
+def test_axial_amplitudes_keep_the_energy_of_a_stack_of_plates() -> None:
     # On the axis the tree is a stack of thin films: with every path summed, its reflection is
     # Airy's, here from the recursion over the interfaces.
     k = 2 * np.pi / 0.8
@@ -177,13 +178,11 @@ def test_axial_amplitudes_keep_the_energy_of_a_stack_of_plates():
     assert field == pytest.approx((r_gw + near) / (1 + r_gw * near), abs=1e-10)
 
 
-def test_optical_path_follows_from_the_geometry_of_the_near_reflection():
+def test_optical_path_follows_from_the_geometry_of_the_near_reflection() -> None:
     # A ray in the plane x = 0 sees flat plates: its path is trigonometry.
     config = load_config({"detector": {"core_diameter": "400 um"}, "scene": {"gap": "1 um"}})
     tilt, focus = 0.01, 0.5
-    beam = Beam(
-        np.zeros(1), np.array([math.sin(tilt)]), np.array([math.cos(tilt)]), np.ones(1)
-    )
+    beam = Beam(np.zeros(1), np.array([math.sin(tilt)]), np.array([math.cos(tilt)]), np.ones(1))
     found = trace(neuron_on_glass(config.scene, 1.4), beam, detector_of(config), focus)
     path = by_ray_and_path(found)[0, "PT CR PT"][1]
     in_water = math.asin(1.52 * math.sin(tilt) / 1.33)
@@ -196,7 +195,7 @@ def test_optical_path_follows_from_the_geometry_of_the_near_reflection():
 
 
 @pytest.mark.parametrize(("mirror_x", "mirror_y"), [(-1, 1), (1, -1), (-1, -1)])
-def test_a_mirrored_beam_gives_the_same_light(mirror_x: int, mirror_y: int):
+def test_a_mirrored_beam_gives_the_same_light(mirror_x: int, mirror_y: int) -> None:
     config = load_config({"tracing": {"rays": 500}})
     beam = vogel_beam(config.objective, config.tracing, 1.52)
     mirrored = beam._replace(vx=mirror_x * beam.vx, vy=mirror_y * beam.vy)
@@ -206,7 +205,7 @@ def test_a_mirrored_beam_gives_the_same_light(mirror_x: int, mirror_y: int):
         assert np.array_equal(getattr(one, name), getattr(other, name)), name
 
 
-def test_a_neuron_of_water_is_not_there():
+def test_a_neuron_of_water_is_not_there() -> None:
     config = load_config(
         {"scene": {"refractive_index": {"neuron": 1.33}}, "tracing": {"rays": 300}}
     )
@@ -215,13 +214,13 @@ def test_a_neuron_of_water_is_not_there():
     assert seen == {"PR"}
 
 
-def test_a_focus_beyond_the_objective_is_refused():
+def test_a_focus_beyond_the_objective_is_refused() -> None:
     config = load_config({"tracing": {"rays": 3}})
     with pytest.raises(ValueError, match="must be below the focus distance"):
         tracer(config)(1.0, 300.0)
 
 
-def test_a_ray_returned_to_the_rim_itself_is_within_it():
+def test_a_ray_returned_to_the_rim_itself_is_within_it() -> None:
     # with the focus on the glass every reflected ray retraces the aperture, the rim ray its rim
     for rays in (10, 300, 3000):
         config = load_config({"tracing": {"rays": rays, "max_intersections": 1}})

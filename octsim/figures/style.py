@@ -1,6 +1,5 @@
 """One look for all figures: colour-blind safe, told apart in grey, units on every axis."""
 
-from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
@@ -10,7 +9,7 @@ import xarray as xr
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from octsim.errors import OctsimError
+from octsim.files import whole
 
 # Okabe and Ito's colours; the order keeps neighbours apart in lightness too.
 BLUE, ORANGE, GREEN, BLACK = "#0072B2", "#E69F00", "#009E73", "#000000"
@@ -18,7 +17,7 @@ PURPLE, VERMILION, SKY = "#CC79A7", "#D55E00", "#56B4E9"
 # green is the ideal spectrum's, black the prediction's
 _COMPONENTS = (BLUE, ORANGE, PURPLE, VERMILION, SKY)
 _SYMBOLS = {"um": "µm", "um-1": "1/µm", "1": ""}
-_LOOK: Mapping[str, Any] = {
+_LOOK: Any = {
     "axes.grid": True,
     "axes.spines.right": False,
     "axes.spines.top": False,
@@ -35,7 +34,7 @@ _LOOK: Mapping[str, Any] = {
 
 def look() -> AbstractContextManager[None]:
     """Give the context in which figures are made and saved."""
-    return mpl.rc_context(dict(_LOOK))
+    return mpl.rc_context(_LOOK)
 
 
 def component_colour(component: int) -> str:
@@ -57,17 +56,10 @@ def save(figure: Figure, path: Path) -> None:
 
     Raises
     ------
-    OctsimError
+    FileError
         If the file can't be written.
     """
-    temporary = path.with_name(f".{path.stem}.tmp{path.suffix}")
     metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        FigureCanvasAgg(figure)
+    FigureCanvasAgg(figure)
+    with whole(path) as temporary:
         figure.savefig(temporary, metadata=metadata)
-        temporary.replace(path)
-    except OSError as error:
-        raise OctsimError(f"{path}: can't be written ({error.strerror})") from None
-    finally:
-        temporary.unlink(missing_ok=True)

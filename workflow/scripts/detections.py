@@ -1,6 +1,7 @@
 """Stage detections: the rays that reach the detector, for each diameter of the sweep."""
 
 from job import count_points, job
+
 from octsim.datasets import read, write
 from octsim.sweep import detections
 

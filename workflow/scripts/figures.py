@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from job import job
+
 from octsim.datasets import read
 from octsim.figures import FIGURES
 from octsim.figures.style import look, save

@@ -1,6 +1,7 @@
 """Stages gaussian_fits and focus_law: the focus of greatest intensity over the diameter."""
 
 from job import job
+
 from octsim.datasets import read, write
 from octsim.focus import focus_law, gaussian_fits
 

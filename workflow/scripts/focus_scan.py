@@ -1,6 +1,7 @@
 """Stage focus_scan: intensity and detected rays over the focus, for one diameter."""
 
 from job import count_points, job
+
 from octsim.datasets import write
 from octsim.focus import focus_scan
 

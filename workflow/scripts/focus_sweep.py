@@ -1,6 +1,7 @@
 """Stage focus_sweep: intensity over the focus, for the diameters of the focus law."""
 
 from job import count_points, job
+
 from octsim.datasets import write
 from octsim.focus import focus_sweep
 

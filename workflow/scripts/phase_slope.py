@@ -1,6 +1,7 @@
 """Stages fourier and phase_slope: from spectra to the change of their phase with the diameter."""
 
 from job import job
+
 from octsim.datasets import read, write
 from octsim.phase import fourier, phase_slope
 

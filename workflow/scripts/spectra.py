@@ -1,6 +1,7 @@
 """Stage spectra: the spectrum of each diameter, from its detected rays."""
 
 from job import job
+
 from octsim.datasets import read, write
 from octsim.sweep import spectra
 

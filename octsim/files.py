@@ -1,0 +1,38 @@
+"""Files that appear whole or not at all."""
+
+import contextlib
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from octsim.errors import FileError
+
+
+def reason(error: Exception) -> str:
+    """Give what an error says, in one line."""
+    said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return " ".join(said.split()) or type(error).__name__
+
+
+@contextmanager
+def whole(path: Path) -> Iterator[Path]:
+    """Give a temporary name beside `path`, that is renamed to it once the file is complete.
+
+    Raises
+    ------
+    FileError
+        If the file can't be written; what stood at `path` before is still there.
+    """
+    temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        yield temporary
+        temporary.replace(path)
+    except (OSError, RuntimeError) as error:
+        raise FileError(
+            f"{path}: can't be written ({reason(error)}); what was there is unchanged"
+        ) from None
+    finally:
+        with contextlib.suppress(OSError):
+            temporary.unlink()

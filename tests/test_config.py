@@ -1,0 +1,198 @@
+"""The config: what is refused and with which words, what merges, and what agrees with what."""
+
+import json
+import warnings
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+
+from octsim.config import Config
+from octsim.errors import ConfigError, OctsimWarning
+from octsim.loading import known_keys, load_config, parts_of
+from octsim.units import format_length, parse_length
+
+ROOT = Path(__file__).parent.parent
+
+BAD: list[tuple[dict[Any, Any], str]] = [
+    # unknown keys, with the nearest known one
+    ({"objective": {"na": 1.1}}, "objective.na: unknown key; the nearest known one is objective.numerical_aperture"),
+    ({"objective": {"numerical_apperture": 1.1}}, "nearest known one is objective.numerical_aperture"),
+    ({"objectve": {}}, "objectve: unknown key; the nearest known one is objective"),
+    ({"gap": "5 nm"}, "gap: unknown key; the nearest known one is scene.gap"),
+    ({"sweep": {"focus": {"slop": 1, "intercept": "1 nm"}}}, "nearest known one is sweep.focus.slope"),
+    # lengths
+    ({"scene": {"gap": 5}}, "scene.gap: 5 given; a length needs its unit"),
+    ({"scene": {"gap": "5"}}, "scene.gap: '5' given; a length needs its unit"),
+    ({"scene": {"gap": "5 kg"}}, "scene.gap: '5 kg' given; 'kg' is not a unit of length"),
+    ({"scene": {"gap": "5 nn"}}, "scene.gap: '5 nn' given; 'nn' is not a unit that is known"),
+    ({"scene": {"gap": "five nm"}}, "scene.gap: 'five nm' given; not a length"),
+    ({"scene": {"gap": "1e999 m"}}, "a length must be finite"),
+    ({"scene": {"gap": None}}, "scene.gap: None given; not a length"),
+    ({"scene": {"gap": "-1 nm"}}, "scene.gap: '-1 nm' given; it should be greater than or equal to 0 um"),
+    ({"detector": {"core_diameter": "0 um"}}, "it should be greater than 0 um"),
+    ({"focus_scan": {"diameter": "0 um"}}, "focus_scan.diameter: '0 um' given"),
+    ({"sweep": {"diameters": {"start": "0 um"}}}, "sweep.diameters.start: '0 um' given"),
+    # types
+    ({"scene": None}, "scene: None given; it should be a mapping"),
+    ({"sweep": {"diameters": [1, 2]}}, "sweep.diameters: [1, 2] given; it should be a mapping"),
+    ({"tracing": {"rays": "3000"}}, "tracing.rays: '3000' given; it should be a valid integer"),
+    ({"tracing": {"rays": 1.5}}, "tracing.rays: 1.5 given; it should be a valid integer"),
+    ({"tracing": {"rays": True}}, "tracing.rays: True given"),
+    ({"objective": {"numerical_aperture": "wide"}}, "objective.numerical_aperture: 'wide' given"),
+    ({"objective": {"magnification": float("nan")}}, "objective.magnification: nan given"),
+    ({"processing": {"window": "hammin"}}, "processing.window: 'hammin' given; it should be"),
+    ({"tracing": {"scheme": "grid"}}, "tracing.scheme: 'grid' given; it should be 'vogel'"),
+    ({"sweep": {"focus": "best"}}, "sweep.focus: 'best' given; it should be 'law', or {slope"),
+    ({"sweep": {"focus": {"slope": 0.5}}}, "sweep.focus.intercept: missing"),
+    ({3: 4}, "3: 3 given; Keys should be strings"),
+    # ranges and what is impossible
+    ({"tracing": {"rays": 0}}, "tracing.rays: 0 given; it should be greater than or equal to 1"),
+    ({"tracing": {"min_amplitude": 1}}, "tracing.min_amplitude: 1 given; it should be less than 1"),
+    ({"spectrum": {"samples": 1}}, "spectrum.samples: 1 given"),
+    ({"sweep": {"diameters": {"num": 1}}}, "sweep.diameters.num: 1 given"),
+    ({"focus_law": {"fraction": {"num": 3}}}, "focus_law.fraction.num: 3 given"),
+    ({"focus_law": {"diameters": {"num": 1}}}, "focus_law.diameters.num: 1 given"),
+    ({"scene": {"refractive_index": {"glass": 0.9}}}, "scene.refractive_index.glass: 0.9 given"),
+    ({"objective": {"numerical_aperture": 1.52}}, "objective.numerical_aperture: 1.52 given; it must be below the index of glass"),
+    ({"scene": {"refractive_index": {"glass": 1.1}}}, "objective.numerical_aperture: 1.2 given; it must be below"),
+    ({"spectrum": {"wavelength": {"min": "900 nm"}}}, "spectrum.wavelength.min: 0.9 um given; it must be below"),
+    ({"sweep": {"diameters": {"start": "3 um"}}}, "sweep.diameters.start: 3.0 um given; it must be below sweep.diameters.stop = 2.0 um"),
+    ({"focus_law": {"fraction": {"start": 0.8}}}, "focus_law.fraction.start: 0.8 given; it must be below"),
+    ({"objective": {"focus_distance": "4 um"}}, "objective.focus_distance: 4.0 um given; it must exceed every focus, and focus_scan.focus.stop"),
+    ({"focus_law": {"fraction": {"stop": 200.0}}}, "and focus_law.fraction.stop asks for one at 480.0 um"),
+    ({"sweep": {"focus": {"slope": 0, "intercept": "1 mm"}}}, "and sweep.focus asks for one at 1000.0 um"),
+    ({"run": "../elsewhere"}, "run: '../elsewhere' given; it should be a plain name"),
+    ({"run": ".hidden"}, "run: '.hidden' given; it should be a plain name"),
+    ({"run": ""}, "run: '' given; it should be a plain name"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("overlay", "message"), BAD, ids=[message[:50] for _, message in BAD])
+def test_a_bad_config_is_refused_with_its_key_value_and_remedy(
+    overlay: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(ConfigError) as caught:
+        load_config(overlay)
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value).replace("\nsweep.focus.slop", " sweep.focus.slop")
+
+
+def test_every_problem_gets_its_line() -> None:
+    with pytest.raises(ConfigError) as caught:
+        load_config({"scene": {"gap": 5}, "tracing": {"rays": 0}, "colour": "blue"})
+    assert len(str(caught.value).splitlines()) == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("a: : b", "not YAML"),
+        ("- 1", "holds a list, not keys with values"),
+        ("scene: {gap: 1 nm}\nscene: {gap: 2 nm}", "the key 'scene' stands twice"),
+    ],
+)
+def test_a_bad_file_is_refused_in_one_line(tmp_path: Path, text: str, message: str) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(ConfigError, match=message) as caught:
+        load_config(file)
+    assert str(caught.value).startswith(str(file))
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_or_binary_file_is_refused_in_one_line(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"none\.yaml: can't be read \(No such file"):
+        load_config(tmp_path / "none.yaml")
+    (tmp_path / "x.yaml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ConfigError, match="it is not text"):
+        load_config(tmp_path / "x.yaml")
+
+
+def test_overlays_merge_deeply_and_the_last_wins() -> None:
+    config = load_config(
+        {"sweep": {"diameters": {"num": 11}}, "scene": {"gap": "1 nm"}},
+        {"scene": {"gap": "0.02 um"}, "sweep": {"focus": {"slope": 0, "intercept": "1 um"}}},
+        {"sweep": {"focus": {"slope": 0.5}}},
+    )
+    assert (config.sweep.diameters.start, config.sweep.diameters.num) == (1.0, 11)
+    assert config.scene.gap == 0.02
+    assert config.sweep.focus.slope == 0.5  # type: ignore[union-attr]
+    assert config.sweep.focus.intercept == 1.0  # type: ignore[union-attr]
+
+
+def test_an_overlay_can_go_back_to_the_law() -> None:
+    line = {"sweep": {"focus": {"slope": 0, "intercept": "1 um"}}}
+    assert load_config(line, {"sweep": {"focus": "law"}}) == load_config()
+
+
+def test_numbers_in_yaml_may_have_an_exponent_without_a_dot(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text("tracing: {min_amplitude: 1e-6}\nobjective: {magnification: 2e1}\n")
+    assert load_config(file).tracing.min_amplitude == 1e-6
+
+
+def test_an_empty_overlay_is_the_thesis(tmp_path: Path) -> None:
+    (tmp_path / "empty.yaml").write_text("# nothing\n")
+    assert load_config(tmp_path / "empty.yaml") == load_config() == Config()
+
+
+def test_the_resolved_config_reads_back_to_the_same_bits() -> None:
+    config = load_config({"scene": {"gap": "1.2345678901234567 nm"}})
+    assert load_config(json.loads(json.dumps(config.to_dict()))) == config
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_a_length_reads_back_to_the_same_bits(length: float) -> None:
+    assert parse_length(format_length(length)) == length
+
+
+def test_equal_lengths_in_different_units_are_the_same_number() -> None:
+    assert parse_length("650 nm") == parse_length("0.65 um") == parse_length("6.5e-7 m") == 0.65
+    assert parse_length("2 µm") == parse_length("2 μm") == parse_length("2um") == 2.0
+
+
+def test_a_config_is_frozen() -> None:
+    with pytest.raises(ValueError, match="frozen"):
+        load_config().scene.gap = 1.0  # type: ignore[misc]
+
+
+def test_a_diameter_step_that_makes_the_phase_ambiguous_is_warned_of() -> None:
+    with pytest.warns(OctsimWarning, match=r"a step of 0\.142857 um is above .* = 0\.135762 um"):
+        load_config({"sweep": {"diameters": {"num": 8}}})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        load_config({"sweep": {"diameters": {"num": 9}}})
+
+
+def test_the_default_config_file_is_the_defaults_and_names_every_key() -> None:
+    file = ROOT / "config" / "default.yaml"
+    assert load_config(file) == Config()
+    written = yaml.safe_load(file.read_text(encoding="utf-8"))
+
+    def keys(part: object, prefix: str = "") -> set[str]:
+        if not isinstance(part, dict):
+            return set()
+        return {prefix + k for k in part}.union(
+            *(keys(value, f"{prefix}{k}.") for k, value in part.items())
+        )
+
+    optional = {"sweep.focus.slope", "sweep.focus.intercept"}
+    assert keys(written) == set(known_keys()) - optional
+
+
+def test_the_schema_file_is_the_models_schema() -> None:
+    schema = json.loads((ROOT / "config" / "schema.json").read_text(encoding="utf-8"))
+    assert schema == Config.model_json_schema()
+
+
+def test_parts_of_a_config_change_with_the_keys_they_hold_alone() -> None:
+    config = load_config()
+    moved = load_config({"scene": {"gap": "6 nm"}})
+    assert parts_of(config, "scene") != parts_of(moved, "scene")
+    assert parts_of(config, "scene.refractive_index", "sweep") == parts_of(
+        moved, "scene.refractive_index", "sweep"
+    )

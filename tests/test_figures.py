@@ -1,0 +1,58 @@
+"""Figures: drawn from stored datasets, labelled with units, the same bytes each time."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.colors import to_rgb
+
+import octsim
+from octsim.figures import FIGURES
+from octsim.figures.style import component_colour, look, save
+
+
+@pytest.fixture(scope="module")
+def stages() -> dict[str, xr.Dataset]:
+    config = octsim.load_config(
+        {
+            "tracing": {"rays": 200},
+            "focus_scan": {"focus": {"num": 21}},
+            "focus_law": {"diameters": {"num": 3}, "fraction": {"num": 11}},
+            "sweep": {"diameters": {"num": 15}},
+        }
+    )
+    sweep = octsim.focus_sweep(config)
+    fits = octsim.gaussian_fits(config, sweep)
+    law = octsim.focus_law(config, fits)
+    spectra = octsim.spectra(config, octsim.detections(config, law))
+    fourier = octsim.fourier(config, spectra)
+    return {
+        "focus_scan": octsim.focus_scan(config),
+        "gaussian_fits": fits,
+        "focus_law": law,
+        "spectra": spectra,
+        "fourier": fourier,
+        "phase_slope": octsim.phase_slope(config, fourier),
+    }
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_a_figure_is_the_same_bytes_each_time_and_has_units(
+    name: str, stages: dict[str, xr.Dataset], tmp_path: Path
+) -> None:
+    draw, needed = FIGURES[name]
+    for copy in ("a", "b"):
+        with look():
+            figure = draw(*(stages[stage] for stage in needed))
+            for form in ("png", "svg"):
+                save(figure, tmp_path / f"{copy}.{form}")
+    for form in ("png", "svg"):
+        assert (tmp_path / f"a.{form}").read_bytes() == (tmp_path / f"b.{form}").read_bytes()
+    labels = [text for axes in figure.axes for text in (axes.get_xlabel(), axes.get_ylabel())]
+    assert any("(" in text for text in labels)
+
+
+def test_components_differ_in_lightness_too() -> None:
+    light = [np.dot(to_rgb(component_colour(c)), (0.2126, 0.7152, 0.0722)) for c in (1, 2)]
+    assert abs(light[0] - light[1]) > 0.2
