@@ -1,6 +1,7 @@
 # make results [CONFIG=mine.yaml] [CORES=2]   every dataset and figure of a run
 # make test                                   the test suite
 # make lint                                   formatting, style and types
+# make docs                                   the parts of docs/ that are made
 # make lock                                   resolve the dependencies anew
 PYTHON ?= python3
 CORES ?= 2
@@ -10,7 +11,8 @@ PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 .PHONY: results test lint format docs lock clean
 results: .venv/run
-	$(BIN)/snakemake --cores $(CORES) --configfile $(CONFIG)
+	@test -r $(CONFIG) || { echo "octsim: $(CONFIG): no such config; give one as CONFIG=mine.yaml" >&2; exit 2; }
+	@$(BIN)/snakemake --cores $(CORES) --configfile $(CONFIG)
 
 test: .venv/dev
 	$(BIN)/pytest -n 2
@@ -25,6 +27,9 @@ format: .venv/dev
 	$(BIN)/ruff check --fix
 	$(BIN)/ruff format
 	$(BIN)/snakefmt Snakefile
+
+docs: results
+	$(BIN)/python docs/generate.py
 
 .venv/bin/python:
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "octsim needs Python 3.11 or later, this is " + sys.version)'

@@ -17,6 +17,7 @@ from octsim.provenance import source_digest
 
 try:
     with warnings.catch_warnings(record=True) as remarks:
+        warnings.simplefilter("always")
         # the files themselves, as snakemake's own reading lets a key stand twice
         run = load_config(*workflow.configfiles, config)
 except ConfigError as error:

@@ -1,0 +1,44 @@
+"""What the docs say works as it is written."""
+
+import re
+from pathlib import Path
+
+import matplotlib as mpl
+import pytest
+import yaml
+
+from octsim.loading import load_config
+
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
+
+
+def test_the_python_example_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    mpl.use("Agg")
+    (example,) = blocks("python")
+    exec(example, {})
+    law_slope, phase_slope, unit = capsys.readouterr().out.split()
+    assert float(law_slope) == pytest.approx(0.58, abs=0.02)
+    assert float(phase_slope) == pytest.approx(23.14, rel=0.01)
+    assert unit == "mrad/nm"
+
+
+def test_the_example_config_is_a_valid_one() -> None:
+    (example,) = blocks("yaml")
+    assert load_config(yaml.safe_load(example)).run == "thick"
+
+
+def test_every_dependency_is_justified() -> None:
+    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    runtime = text.split("dependencies = [")[1].split("]")[0]
+    for name in re.findall(r'"([A-Za-z0-9-]+)', runtime):
+        assert re.search(rf"^\|.*\b{name}\b.*\|", README, flags=re.MULTILINE), name
+
+
+def test_every_file_that_is_linked_is_there() -> None:
+    for target in re.findall(r"\]\(([^)#]+)\)", README):
+        assert (ROOT / target).exists(), target

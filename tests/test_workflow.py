@@ -1,0 +1,253 @@
+"""The workflow: a run from nothing, what an edit reruns, what is refused, what survives."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+import yaml
+
+from octsim.config import Config
+from octsim.loading import known_keys
+
+ROOT = Path(__file__).parent.parent
+TINY: dict[str, Any] = {
+    "run": "tiny",
+    "tracing": {"rays": 200},
+    "focus_scan": {"focus": {"num": 5}},
+    "focus_law": {"diameters": {"num": 3}, "fraction": {"num": 9}},
+    "sweep": {"diameters": {"num": 9}},
+}
+GIVEN = {"sweep": {"focus": {"slope": 0.58, "intercept": "69 nm"}}}
+STAGES = [
+    "focus_scan", "focus_sweep", "gaussian_fits", "focus_law", "detections", "spectra", "fourier",
+    "phase_slope",
+]  # fmt: skip
+FIGURES = ["figure_6", "figure_7", "figure_12"]
+
+
+class Checkout:
+    """A checkout of the workflow in a folder of its own."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        shutil.copy(ROOT / "Snakefile", folder)
+        for part in ("workflow", "profiles"):
+            shutil.copytree(
+                ROOT / part, folder / part, ignore=shutil.ignore_patterns("__pycache__")
+            )
+
+    def snakemake(
+        self, overlay: dict[str, Any], *arguments: str
+    ) -> subprocess.CompletedProcess[str]:
+        file = self.folder / "mine.yaml"
+        file.write_text(yaml.safe_dump(overlay), encoding="utf-8")
+        command = [sys.executable, "-m", "snakemake", "--configfile", str(file), *arguments]
+        return subprocess.run(
+            command, cwd=self.folder, capture_output=True, text=True, check=False, env=os.environ
+        )
+
+    def run(self, overlay: dict[str, Any], *arguments: str) -> None:
+        done = self.snakemake(overlay, *arguments)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+    def would_run(self, overlay: dict[str, Any]) -> set[str]:
+        """Rules that a run would execute now."""
+        done = self.snakemake(overlay, "--dry-run")
+        assert done.returncode == 0, done.stdout + done.stderr
+        if "Job stats:" not in done.stdout:
+            return set()
+        table = done.stdout.split("Job stats:")[1].split("total")[0].splitlines()[3:]
+        return {line.split()[0] for line in table if line.strip()} - {"all"}
+
+    def results(self) -> dict[str, bytes]:
+        folder = self.folder / "results"
+        return {
+            str(path.relative_to(folder)): path.read_bytes()
+            for path in sorted(folder.rglob("*"))
+            if path.suffix in {".nc", ".png", ".svg"}
+        }
+
+
+def merged(*overlays: dict[str, Any]) -> dict[str, Any]:
+    result: dict[str, Any] = {}
+    for overlay in overlays:
+        for key, value in overlay.items():
+            below = result.get(key)
+            result[key] = (
+                merged(below, value)
+                if isinstance(below, dict) and isinstance(value, dict)
+                else value
+            )
+    return result
+
+
+@pytest.fixture(scope="module")
+def law(tmp_path_factory: pytest.TempPathFactory) -> Checkout:
+    checkout = Checkout(tmp_path_factory.mktemp("law"))
+    checkout.run(TINY)
+    return checkout
+
+
+@pytest.fixture(scope="module")
+def given(tmp_path_factory: pytest.TempPathFactory) -> Checkout:
+    checkout = Checkout(tmp_path_factory.mktemp("given"))
+    checkout.run(merged(TINY, GIVEN))
+    return checkout
+
+
+def test_a_run_leaves_every_dataset_figure_log_and_benchmark(law: Checkout) -> None:
+    folder = law.folder / "results" / "tiny"
+    for stage in STAGES:
+        with xr.open_dataset(folder / f"{stage}.nc") as dataset:
+            assert dataset.attrs["stage"] == stage
+    for figure in FIGURES:
+        for form in ("png", "svg"):
+            assert (folder / "figures" / f"{figure}.{form}").stat().st_size > 1000
+    for stage, points in {"focus_scan": 5, "focus_sweep": 27, "detections": 9}.items():
+        counts = json.loads((folder / "logs" / f"{stage}.json").read_text())
+        assert counts == {"points_traced": points, "points_from_cache": 0}
+        assert (folder / "benchmarks" / f"{stage}.tsv").exists()
+        assert (folder / "logs" / f"{stage}.log").exists()
+
+
+def test_a_second_run_does_nothing(law: Checkout) -> None:
+    assert law.would_run(TINY) == set()
+
+
+def test_the_same_config_in_other_units_and_order_reruns_nothing(law: Checkout) -> None:
+    other = merged(TINY, {"scene": {"gap": "0.005 um"}, "objective": {"magnification": 20.0}})
+    assert law.would_run(dict(reversed(other.items()))) == set()
+
+
+EVERYTHING = {
+    "focus_scan", "focus_sweep", "focus_law", "detections", "spectra", "phase_slope", "figures",
+}  # fmt: skip
+FITTED = EVERYTHING - {"focus_scan"}
+SWEPT = {"detections", "spectra", "phase_slope", "figures"}
+# key: (edited value, what reruns under the fitted law, what reruns with a given focus)
+EDITS: dict[str, tuple[Any, set[str], set[str]]] = {
+    "run": ("other", EVERYTHING, EVERYTHING),
+    "scene.refractive_index.glass": (1.53, EVERYTHING, EVERYTHING),
+    "scene.refractive_index.water": (1.34, EVERYTHING, EVERYTHING),
+    "scene.refractive_index.neuron": (1.38, EVERYTHING, EVERYTHING),
+    "scene.gap": ("6 nm", EVERYTHING, EVERYTHING),
+    "objective.numerical_aperture": (1.1, EVERYTHING, EVERYTHING),
+    "objective.focus_distance": ("310 um", EVERYTHING, EVERYTHING),
+    "objective.magnification": (21, EVERYTHING, EVERYTHING),
+    "detector.core_diameter": ("4 um", EVERYTHING, EVERYTHING),
+    "tracing.scheme": (None, set(), set()),  # there is but one
+    "tracing.rays": (201, EVERYTHING, EVERYTHING),
+    "tracing.max_intersections": (10, EVERYTHING, EVERYTHING),
+    "tracing.min_amplitude": (1e-4, EVERYTHING, EVERYTHING),
+    "spectrum.wavelength.min": ("660 nm", EVERYTHING, EVERYTHING - {"detections"}),
+    "spectrum.wavelength.max": ("890 nm", EVERYTHING, EVERYTHING - {"detections"}),
+    "spectrum.samples": (999, EVERYTHING, EVERYTHING - {"detections"}),
+    "focus_scan.diameter": ("2.1 um", {"focus_scan", "figures"}, {"focus_scan", "figures"}),
+    "focus_scan.focus": ({"num": 6}, {"focus_scan", "figures"}, {"focus_scan", "figures"}),
+    "focus_law.diameters": ({"num": 4}, FITTED, {"focus_sweep", "focus_law", "figures"}),
+    "focus_law.fraction": ({"num": 10}, FITTED, {"focus_sweep", "focus_law", "figures"}),
+    "sweep.diameters": ({"num": 10}, SWEPT, SWEPT),
+    "sweep.focus": ({"slope": 0.5, "intercept": "0.1 um"}, SWEPT, SWEPT),
+    "processing.estimator": (None, set(), set()),  # there is but one
+    "processing.centre": ("mean", {"phase_slope", "figures"}, {"phase_slope", "figures"}),
+    "processing.window": ("hann", {"phase_slope", "figures"}, {"phase_slope", "figures"}),
+}
+
+
+def test_every_key_is_edited_below() -> None:
+    part: Any
+    leaves = set()
+    for key in known_keys():
+        part = Config().to_dict()
+        for name in key.split("."):
+            part = part.get(name) if isinstance(part, dict) else None
+        is_range = isinstance(part, dict) and "num" in part
+        if is_range or (part is not None and not isinstance(part, dict)):
+            leaves.add(key)
+    ends = {f"{key}.{end}" for key in leaves for end in ("start", "stop", "num")}
+    assert leaves - ends == set(EDITS)
+
+
+@pytest.mark.parametrize("key", EDITS)
+def test_an_edit_reruns_only_what_reads_the_key(key: str, law: Checkout, given: Checkout) -> None:
+    value, with_law, with_focus = EDITS[key]
+    edit: Any = value
+    for name in reversed(key.split(".")):
+        edit = {name: edit}
+    if value is None:
+        edit = {}
+    assert law.would_run(merged(TINY, edit)) == with_law
+    assert given.would_run(merged(TINY, GIVEN, edit)) == with_focus
+
+
+def test_comments_and_formatting_of_the_sources_rerun_nothing(tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    checkout.run(TINY, "--until", "focus_law")
+    script = tmp_path / "workflow" / "scripts" / "focus_law.py"
+    script.write_text("# a comment\n" + script.read_text().replace("config, fits", "config,  fits"))
+    untouched = {"focus_scan", "detections", "spectra", "phase_slope", "figures"}
+    assert checkout.would_run(TINY) == untouched
+    script.write_text(script.read_text() + "\nprint('more')\n")
+    assert checkout.would_run(TINY) == untouched | {"focus_law"}
+
+
+@pytest.mark.parametrize(
+    ("overlay", "message"),
+    [
+        ({"objective": {"na": 1}}, "octsim: objective.na: unknown key; the nearest known one is"),
+        ({"scene": {"gap": 5}}, "octsim: scene.gap: 5 given; a length needs its unit"),
+        ({"run": "../up"}, "octsim: run: '../up' given; it should be a plain name"),
+    ],
+)
+def test_a_bad_config_is_one_line_and_touches_nothing(
+    overlay: dict[str, Any], message: str, tmp_path: Path
+) -> None:
+    done = Checkout(tmp_path).snakemake(overlay)
+    assert done.returncode != 0
+    said = [line for line in done.stderr.splitlines() if "profile" not in line]
+    assert len(said) == 1
+    assert said[0].startswith(message)
+    assert "Traceback" not in done.stdout + done.stderr
+    assert not (tmp_path / "results").exists()
+
+
+def test_a_key_that_stands_twice_is_refused(tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    (tmp_path / "twice.yaml").write_text("scene: {gap: 1 nm}\nscene: {gap: 2 nm}\n")
+    done = checkout.snakemake(TINY, "--configfile", "twice.yaml")
+    assert done.returncode != 0
+    assert "the key 'scene' stands twice" in done.stderr
+
+
+def test_a_failed_stage_keeps_the_old_dataset_and_runs_again(tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    checkout.run(TINY)
+    before = checkout.results()["tiny/detections.nc"]
+    no_law = merged(TINY, {"focus_law": {"fraction": {"stop": 0.42}}})
+    for _ in range(2):  # the second time too: nothing that failed counts as done
+        done = checkout.snakemake(no_law)
+        assert done.returncode != 0
+        assert "octsim: sweep.focus: 'law' given, but there is no law" in done.stderr
+        assert "Traceback" not in done.stderr
+        assert checkout.results()["tiny/detections.nc"] == before
+    checkout.run(TINY)
+    assert checkout.results()["tiny/detections.nc"] == before
+
+
+def test_a_diameter_step_that_aliases_is_warned_of_once(tmp_path: Path) -> None:
+    coarse = merged(TINY, {"sweep": {"diameters": {"num": 5}}})
+    done = Checkout(tmp_path).snakemake(coarse, "--dry-run")
+    assert done.returncode == 0
+    assert done.stderr.count("octsim: warning: sweep.diameters: a step of 0.25 um") == 1
+
+
+def test_every_run_has_its_own_folder_and_the_same_bits(law: Checkout, tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    checkout.run(TINY, "--cores", "1")
+    assert checkout.results() == law.results()
