@@ -8,22 +8,19 @@
 # makes it run again. Outputs are marked `update`: a script replaces them whole, at its end, so a
 # run that fails leaves what was there.
 import sys
-import warnings
 from pathlib import Path
 
 from octsim.errors import ConfigError
-from octsim.loading import load_config, parts_of
+from octsim.loading import load_config, parts_of, remarks
 from octsim.provenance import source_digest
 
 try:
-    with warnings.catch_warnings(record=True) as remarks:
-        warnings.simplefilter("always")
-        # the files themselves, as snakemake's own reading lets a key stand twice
-        run = load_config(*workflow.configfiles, config)
+    # the files themselves too, as snakemake's own reading lets a key stand twice
+    run = load_config(*workflow.configfiles, config)
 except ConfigError as error:
     sys.exit(f"octsim: {error}")
-for remark in remarks:
-    print(f"octsim: warning: {remark.message}", file=sys.stderr)
+for remark in remarks(run):
+    print(f"octsim: warning: {remark}", file=sys.stderr)
 
 INSTRUMENT = ("scene", "objective", "detector", "tracing")
 SCRIPTS = Path(workflow.basedir) / "workflow" / "scripts"

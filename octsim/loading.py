@@ -56,7 +56,8 @@ def load_config(*overlays: str | Path | Mapping[str, Any]) -> Config:
     problems = list(_impossible(config))
     if problems:
         raise ConfigError("\n".join(problems))
-    _warn_of_aliasing(config)
+    for remark in remarks(config):
+        warnings.warn(remark, OctsimWarning, stacklevel=2)
     return config
 
 
@@ -209,18 +210,18 @@ def _impossible(config: Config) -> Iterator[str]:
         )
 
 
-def _warn_of_aliasing(config: Config) -> None:
+def remarks(config: Config) -> list[str]:
+    """Say what is possible but likely not meant, a line each."""
     band, diameters = config.spectrum.wavelength, config.sweep.diameters
     slope = config.scene.refractive_index.neuron * 2 * np.pi * (1 / band.min + 1 / band.max)
     step = (diameters.stop - diameters.start) / (diameters.num - 1)
-    if step > np.pi / slope:
-        warnings.warn(
-            f"sweep.diameters: a step of {format_length(round(step, 6))} is above "
-            f"π/(n_neuron (k_min + k_max)) = {format_length(round(np.pi / slope, 6))}, so the "
-            "unwrapped phase is ambiguous and its slope can be wrong; raise sweep.diameters.num",
-            OctsimWarning,
-            stacklevel=3,
-        )
+    if step <= np.pi / slope:
+        return []
+    return [
+        f"sweep.diameters: a step of {format_length(round(step, 6))} is above "
+        f"π/(n_neuron (k_min + k_max)) = {format_length(round(np.pi / slope, 6))}, so the "
+        "unwrapped phase is ambiguous and its slope can be wrong; raise sweep.diameters.num"
+    ]
 
 
 def parts_of(config: Config, *keys: str) -> dict[str, object]:
