@@ -23,6 +23,7 @@ for remark in remarks(run):
     print(f"octsim: warning: {remark}", file=sys.stderr)
 
 INSTRUMENT = ("scene", "objective", "detector", "tracing")
+FIGURES = (1, 6, 7, 8, 9, 10, 11, 12)
 SCRIPTS = Path(workflow.basedir) / "workflow" / "scripts"
 
 
@@ -51,7 +52,7 @@ rule all:
         expand(
             "results/{run}/figures/figure_{number}.{form}",
             run=run.run,
-            number=(6, 7, 12),
+            number=FIGURES,
             form=("png", "svg"),
         ),
 
@@ -165,12 +166,14 @@ rule figures:
         focus_scan="results/{run}/focus_scan.nc",
         gaussian_fits="results/{run}/gaussian_fits.nc",
         focus_law="results/{run}/focus_law.nc",
+        spectra="results/{run}/spectra.nc",
+        fourier="results/{run}/fourier.nc",
         phase_slope="results/{run}/phase_slope.nc",
     output:
         update(
             expand(
                 "results/{{run}}/figures/figure_{number}.{form}",
-                number=(6, 7, 12),
+                number=FIGURES,
                 form=("png", "svg"),
             )
         ),
@@ -179,7 +182,7 @@ rule figures:
     benchmark:
         "results/{run}/benchmarks/figures.tsv"
     params:
-        made_from=made_from("figures"),
+        made_from=made_from("figures", "processing"),
     message:
         "Draw the figures"
     script:

@@ -8,6 +8,7 @@ import xarray as xr
 from matplotlib.colors import to_rgb
 
 import octsim
+from octsim.config import Processing
 from octsim.figures import FIGURES
 from octsim.figures.style import component_colour, look, save
 
@@ -41,10 +42,9 @@ def stages() -> dict[str, xr.Dataset]:
 def test_a_figure_is_the_same_bytes_each_time_and_has_units(
     name: str, stages: dict[str, xr.Dataset], tmp_path: Path
 ) -> None:
-    draw, needed = FIGURES[name]
     for copy in ("a", "b"):
         with look():
-            figure = draw(*(stages[stage] for stage in needed))
+            figure = FIGURES[name](stages, Processing())
             for form in ("png", "svg"):
                 save(figure, tmp_path / f"{copy}.{form}")
     for form in ("png", "svg"):

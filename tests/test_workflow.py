@@ -28,7 +28,7 @@ STAGES = [
     "focus_scan", "focus_sweep", "gaussian_fits", "focus_law", "detections", "spectra", "fourier",
     "phase_slope",
 ]  # fmt: skip
-FIGURES = ["figure_6", "figure_7", "figure_12"]
+FIGURES = [f"figure_{number}" for number in (1, 6, 7, 8, 9, 10, 11, 12)]
 
 
 class Checkout:

@@ -2,14 +2,25 @@
 
 from collections.abc import Callable, Mapping
 
+import xarray as xr
 from matplotlib.figure import Figure
 
+from octsim.config import Processing
+from octsim.figures.beam import figure_1
 from octsim.figures.focus import figure_6, figure_7
-from octsim.figures.phase import figure_12
+from octsim.figures.phase import figure_10, figure_11, figure_12
+from octsim.figures.spectrum import figure_8, figure_9
 
-FIGURES: Mapping[str, tuple[Callable[..., Figure], tuple[str, ...]]] = {
-    "figure_6": (figure_6, ("focus_scan",)),
-    "figure_7": (figure_7, ("gaussian_fits", "focus_law")),
-    "figure_12": (figure_12, ("phase_slope",)),
+Draw = Callable[[Mapping[str, xr.Dataset], Processing], Figure]
+
+FIGURES: Mapping[str, Draw] = {
+    "figure_1": lambda _, __: figure_1(),
+    "figure_6": lambda stages, _: figure_6(stages["focus_scan"]),
+    "figure_7": lambda stages, _: figure_7(stages["gaussian_fits"], stages["focus_law"]),
+    "figure_8": lambda stages, processing: figure_8(stages["spectra"], processing),
+    "figure_9": lambda stages, _: figure_9(stages["fourier"]),
+    "figure_10": lambda stages, _: figure_10(stages["fourier"], stages["phase_slope"]),
+    "figure_11": lambda stages, _: figure_11(stages["fourier"], stages["phase_slope"]),
+    "figure_12": lambda stages, _: figure_12(stages["phase_slope"]),
 }
-"""Each figure's function and the stages whose datasets it draws."""
+"""How each figure is drawn from the stages' datasets, by name, and the run's processing."""

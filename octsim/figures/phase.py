@@ -1,26 +1,71 @@
-"""Figure 12: the phase slope over the diameter."""
+"""Figures 10 to 12: magnitude, phase and phase slope of the components over the diameter."""
+
+from collections.abc import Iterator
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from octsim.figures.style import BLACK, GREEN, component_colour, label
+
+_MARKERS = ".x+1234"
+
+
+def _draw_components(
+    axes: Axes, diameter: NDArray[np.float64], strongest: NDArray[np.int64], values: xr.DataArray
+) -> None:
+    """Draw each component in use: solid where it is the strongest, dotted elsewhere."""
+    for number in _in_use(strongest):
+        colour, curve = component_colour(number), values.isel(component=number).values
+        axes.plot(diameter, curve, color=colour, linestyle=":", linewidth=1.0)
+        axes.plot(
+            diameter, np.where(strongest == number, curve, np.nan),
+            color=colour, marker=_MARKERS[(number - 1) % len(_MARKERS)], markersize=3,
+            label=f"component {number}",
+        )  # fmt: skip
+
+
+def _in_use(strongest: NDArray[np.int64]) -> Iterator[int]:
+    yield from (int(number) for number in np.unique(strongest))
+
+
+def figure_10(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
+    """Draw the magnitude of the components over the diameter (thesis fig. 10)."""
+    figure = Figure()
+    axes = figure.subplots()
+    diameter = fourier["diameter"]
+    _draw_components(axes, diameter.values, slopes["component"].values, fourier["magnitude"])
+    axes.set_xlabel(label(diameter))
+    axes.set_ylabel(label(fourier["magnitude"], "magnitude (sum over the samples)"))
+    axes.set_title("Magnitude (solid where strongest)")
+    axes.legend()
+    return figure
+
+
+def figure_11(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
+    """Draw the unwrapped phase of the components over the diameter (thesis fig. 11)."""
+    figure = Figure()
+    axes = figure.subplots()
+    diameter = fourier["diameter"]
+    unwrapped = fourier["phase"].copy(data=np.unwrap(fourier["phase"].values, axis=0))
+    _draw_components(axes, diameter.values, slopes["component"].values, unwrapped)
+    axes.set_xlabel(label(diameter))
+    axes.set_ylabel(label(fourier["phase"], "phase, unwrapped"))
+    axes.set_title("Phase (solid where strongest)")
+    axes.legend()
+    return figure
 
 
 def figure_12(slopes: xr.Dataset) -> Figure:
     """Draw the phase slope by component, the ideal curve and the prediction (thesis fig. 12)."""
     figure = Figure()
     axes = figure.subplots()
-    diameter, component = slopes["diameter"].values, slopes["component"].values
-    for number in np.unique(component):
-        by_component = slopes["component_phase_slope"].isel(component=number).values
-        colour = component_colour(number)
-        axes.plot(diameter, by_component, color=colour, linestyle=":", linewidth=1.0)
-        strongest = np.where(component == number, by_component, np.nan)
-        axes.plot(
-            diameter, strongest,
-            color=colour, marker=".", markersize=3, label=f"component {number}",
-        )  # fmt: skip
+    diameter = slopes["diameter"]
+    _draw_components(
+        axes, diameter.values, slopes["component"].values, slopes["component_phase_slope"]
+    )
     axes.plot(
         diameter, slopes["ideal_phase_slope"],
         color=GREEN, linestyle="--", label="ideal spectrum cos(2ndk)",
@@ -30,8 +75,8 @@ def figure_12(slopes: xr.Dataset) -> Figure:
     shown = np.concatenate((slopes["phase_slope"].values, slopes["ideal_phase_slope"].values))
     margin = 0.15 * max(float(np.ptp(shown)), 0.1)
     axes.set_ylim(shown.min() - margin, shown.max() + 3 * margin)
-    axes.set_xlabel(label(slopes["diameter"]))
+    axes.set_xlabel(label(diameter))
     axes.set_ylabel(label(slopes["phase_slope"], "phase slope"))
-    axes.set_title("Phase slope (dotted where another component is stronger)")
+    axes.set_title("Phase slope (solid where strongest)")
     axes.legend(ncols=2)
     return figure
