@@ -9,10 +9,21 @@ CONFIG ?= config/default.yaml
 BIN = .venv/bin
 PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 
+# snakemake itself says little of a config that is missing or not YAML
+define CHECK
+import sys, warnings, octsim
+warnings.simplefilter("ignore")
+try:
+    octsim.load_config(sys.argv[1])
+except octsim.ConfigError as error:
+    sys.exit(f"octsim: {error}")
+endef
+export CHECK
+
 .PHONY: results test lint format docs lock clean
 results: .venv/run
-	@test -r $(CONFIG) || { echo "octsim: $(CONFIG): no such config; give one as CONFIG=mine.yaml" >&2; exit 2; }
-	@$(BIN)/snakemake --cores $(CORES) --configfile $(CONFIG)
+	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
+	@$(BIN)/snakemake --cores $(CORES) --configfile "$(CONFIG)"
 
 test: .venv/dev
 	$(BIN)/pytest -n 2

@@ -7,23 +7,43 @@
 # Each rule names the config keys that it reads and the script whose code it runs: nothing else
 # makes it run again. Outputs are marked `update`: a script replaces them whole, at its end, so a
 # run that fails leaves what was there.
+import os
 import sys
 from pathlib import Path
 
-from octsim.errors import ConfigError
+from filelock import FileLock, Timeout
+from octsim.config import Config
+from octsim.errors import OctsimError
+from octsim.files import require_folder
 from octsim.loading import load_config, parts_of, remarks
 from octsim.provenance import source_digest
 
 try:
     # the files themselves too, as snakemake's own reading lets a key stand twice
     run = load_config(*workflow.configfiles, config)
-except ConfigError as error:
+    require_folder(Path(f"results/{run.run}"))
+except OctsimError as error:
     sys.exit(f"octsim: {error}")
+if run.run == Config().run and run != Config():
+    remark = "run: not given, so this goes to results/thesis in the place of the thesis itself"
+    print(f"octsim: warning: {remark}", file=sys.stderr)
 for remark in remarks(run):
     print(f"octsim: warning: {remark}", file=sys.stderr)
 
 INSTRUMENT = ("scene", "objective", "detector", "tracing")
+os.environ["OCTSIM_RUN"] = str(os.getpid())  # a job ends with the run that started it
+STAGES = (
+    "focus_scan",
+    "focus_sweep",
+    "gaussian_fits",
+    "focus_law",
+    "detections",
+    "spectra",
+    "fourier",
+    "phase_slope",
+)
 FIGURES = (1, 6, 7, 8, 9, 10, 11, 12)
+LOCK = FileLock(f"results/{run.run}/.lock")  # held from the start of a run to its end
 SCRIPTS = Path(workflow.basedir) / "workflow" / "scripts"
 
 
@@ -39,6 +59,19 @@ def made_from(script: str, *keys: str) -> dict[str, object]:
     return {"code": source_digest(SCRIPTS / f"{script}.py"), **parts_of(run, *keys)}
 
 
+onstart:
+    # one run of a name at a time; the lock goes with the process, however that ends
+    try:
+        LOCK.acquire(blocking=False)
+    except Timeout:
+        sys.exit(f"octsim: another run is at work on results/{run.run}; wait for it or stop it")
+
+
+onsuccess:
+    print(Path(f"results/{run.run}/logs/phase_slope.log").read_text(), end="", file=sys.stderr)
+    print(f"octsim: datasets and figures are in results/{run.run}/", file=sys.stderr)
+
+
 onerror:
     # snakemake notes a failed job's new params with the old output that it restores, and would
     # take that for up to date: mark it incomplete
@@ -48,7 +81,7 @@ onerror:
 
 rule all:
     input:
-        expand("results/{run}/{stage}.nc", run=run.run, stage=("focus_scan", "phase_slope")),
+        expand("results/{run}/{stage}.nc", run=run.run, stage=STAGES),
         expand(
             "results/{run}/figures/figure_{number}.{form}",
             run=run.run,

@@ -1,6 +1,7 @@
 from .config import Config as Config
 from .errors import ConfigError as ConfigError
 from .errors import DatasetError as DatasetError
+from .errors import FileError as FileError
 from .errors import OctsimError as OctsimError
 from .errors import OctsimWarning as OctsimWarning
 from .focus import focus_law as focus_law
@@ -12,3 +13,5 @@ from .phase import fourier as fourier
 from .phase import phase_slope as phase_slope
 from .sweep import detections as detections
 from .sweep import spectra as spectra
+
+__version__: str

@@ -1,7 +1,7 @@
 """The config: what a user may set, its defaults (the thesis) and its limits.
 
-The models are the one source: `config/default.yaml`'s values, `config/schema.json` and the
-reference in the docs are generated from them or tested against them.
+The models are the one source: `config/schema.json` and `docs/config.md` are generated from them,
+`config/default.yaml` is tested against them.
 """
 
 from collections.abc import Mapping
@@ -25,7 +25,10 @@ def _number(value: object) -> object:
 
 
 Number = Annotated[float, BeforeValidator(_number), Field(allow_inf_nan=False)]
-PositiveLength = Annotated[Length, Field(gt=0)]
+PositiveLength = Annotated[Length, Field(ge=1e-6, le=1e6)]  # 1 pm to 1 m
+Position = Annotated[Length, Field(ge=-1e6, le=1e6)]
+Wavelength = Annotated[Length, Field(ge=1e-3, le=1e3)]  # 1 nm to 1 mm
+PositiveNumber = Annotated[Number, Field(ge=1e-6, le=1e6)]
 Index = Annotated[Number, Field(ge=1, le=10)]
 
 
@@ -50,8 +53,8 @@ class Range(Section):
 class FocusRange(Range):
     """Evenly spaced heights of the focus."""
 
-    start: Length
-    stop: Length
+    start: Position
+    stop: Position
 
 
 class DiameterRange(Range):
@@ -64,8 +67,8 @@ class DiameterRange(Range):
 class FractionRange(Range):
     """Evenly spaced fractions of a diameter, enough to fit a Gaussian plus a constant over."""
 
-    start: Number
-    stop: Number
+    start: Annotated[Number, Field(ge=-1e6, le=1e6)]
+    stop: Annotated[Number, Field(ge=-1e6, le=1e6)]
     num: Annotated[int, Field(ge=4, le=1_000_000)]
 
 
@@ -86,17 +89,19 @@ class SceneConfig(Section):
     """What the light meets: a cylinder over a glass slide, in water."""
 
     refractive_index: RefractiveIndex = RefractiveIndex()
-    gap: Annotated[Length, Field(ge=0)] = _key("5 nm", "water between the glass and the neuron")
+    gap: Annotated[Length, Field(ge=0, le=1e6)] = _key(
+        "5 nm", "water between the glass and the neuron"
+    )
 
 
 class Objective(Section):
     """The objective lens, an ideal thin one."""
 
-    numerical_aperture: Annotated[Number, Field(gt=0)] = _key(1.2, "below the index of glass")
+    numerical_aperture: PositiveNumber = _key(1.2, "below the index of glass")
     focus_distance: PositiveLength = _key(
         "300 um", "from the objective plane to the focus; beyond every focus"
     )
-    magnification: Annotated[Number, Field(gt=0)] = _key(20.0, "object to fibre")
+    magnification: PositiveNumber = _key(20.0, "object to fibre")
 
 
 class DetectorConfig(Section):
@@ -123,8 +128,8 @@ class Tracing(Section):
 class Wavelengths(Section):
     """The band, in vacuum."""
 
-    min: PositiveLength = _key("650 nm", "shortest wavelength")
-    max: PositiveLength = _key("900 nm", "longest wavelength")
+    min: Wavelength = _key("650 nm", "shortest wavelength")
+    max: Wavelength = _key("900 nm", "longest wavelength")
 
 
 class Spectrum(Section):
@@ -161,8 +166,12 @@ class FocusLawConfig(Section):
 class FocusLine(Section):
     """A given focus law: focus = slope · diameter + intercept; slope 0 is a fixed focus."""
 
-    slope: Number
-    intercept: Length
+    slope: Annotated[Number, Field(ge=-1e6, le=1e6)]
+    intercept: Position
+
+    def at(self, diameter: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Give the focus for each diameter, both in µm."""
+        return self.slope * diameter + self.intercept
 
 
 def _focus_kind(value: object) -> str:

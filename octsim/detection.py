@@ -46,6 +46,11 @@ class Detector(NamedTuple):
     """f = focus_distance · M / (M + 1)."""
 
 
+def detector_radius(config: Config) -> float:
+    """Radius R_det of the fibre core's image at the focus, core_diameter / (2 M), in µm."""
+    return config.detector.core_diameter / (2 * config.objective.magnification)
+
+
 def detector_of(config: Config) -> Detector:
     """Make the detector that a config describes."""
     objective = config.objective
@@ -53,7 +58,7 @@ def detector_of(config: Config) -> Detector:
     return Detector(
         objective_radius=aperture_radius(objective, config.scene.refractive_index.glass),
         focus_distance=objective.focus_distance,
-        radius=config.detector.core_diameter / (2 * magnification),
+        radius=detector_radius(config),
         magnification=magnification,
         focal_length=objective.focus_distance * magnification / (magnification + 1),
     )

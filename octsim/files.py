@@ -15,6 +15,21 @@ def reason(error: Exception) -> str:
     return " ".join(said.split()) or type(error).__name__
 
 
+def require_folder(path: Path) -> None:
+    """Check that a folder is there, or can be made, and that files can be written in it.
+
+    Raises
+    ------
+    FileError
+        If it can't; nothing is made.
+    """
+    there = next(place for place in (path, *path.absolute().parents) if place.exists())
+    if not there.is_dir():
+        raise FileError(f"{path}: can't be a folder, as {there.name} is a file; move that away")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise FileError(f"{path}: can't be written; make {there} writable or run elsewhere")
+
+
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
     """Give a temporary name beside `path`, that is renamed to it once the file is complete.
@@ -24,7 +39,8 @@ def whole(path: Path) -> Iterator[Path]:
     FileError
         If the file can't be written; what stood at `path` before is still there.
     """
-    temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
+    # always the same name: what a killed process left is overwritten, not left lying about
+    temporary = path.with_name(f".{path.stem}.partial{path.suffix}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         yield temporary

@@ -77,7 +77,7 @@ def fit_gaussian(focus: NDArray[np.float64], intensity: NDArray[np.float64]) -> 
         return GaussianFit(nothing, nothing, np.nan, FitStatus.NO_INTERIOR_PEAK)
     position, level = (focus - focus[0]) / reach, (intensity - low) / height
     start = [position[peaks[level[peaks].argmax()]], 0.25, 1.0, 0.0]
-    tolerance = 1e-14
+    tolerance = 1e-12
     try:
         with np.errstate(over="ignore", under="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore", OptimizeWarning)  # a covariance may be out of reach
@@ -206,14 +206,16 @@ def focus_law(config: Config, fits: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        slope, intercept and their standard errors; NaN if a fit has no peak.
+        slope, intercept and their standard errors, NaN if a fit has no peak; status(diameter) of
+        the fits.
     """
     line = fit_line(fits["diameter"].values, fits["centre"].values)
     return make(
         "focus_law",
         config,
         "Focus of greatest intensity as a linear function of the diameter",
-        {name: ((), value) for name, value in line._asdict().items()},
-        {},
+        {name: ((), value) for name, value in line._asdict().items()}
+        | {"status": fits["status"].variable},
+        {"diameter": fits["diameter"].values},
         __name__,
     )

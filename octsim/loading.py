@@ -1,6 +1,7 @@
 """From a user's overlay to a checked config, or to one clear line for each problem."""
 
 import difflib
+import re
 import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -13,6 +14,7 @@ from pydantic_core import ErrorDetails
 
 from octsim.config import Config, FocusLine, Range
 from octsim.errors import ConfigError, OctsimWarning
+from octsim.plates import aliasing_step
 from octsim.units import format_length
 
 
@@ -65,7 +67,8 @@ class _Loader(yaml.SafeLoader):
     """YAML in which a key may stand only once."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        keys = [self.construct_object(key, deep=True) for key, _ in node.value]
+        merge = "tag:yaml.org,2002:merge"  # `<<`, which may well stand beside what it brings
+        keys = [self.construct_object(key, True) for key, _ in node.value if key.tag != merge]
         for key in keys:
             if keys.count(key) > 1:
                 raise yaml.constructor.ConstructorError(
@@ -80,6 +83,11 @@ def _read(path: Path) -> Mapping[str, Any]:
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not text"
         raise ConfigError(f"{path}: can't be read ({reason}); give a YAML file") from None
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        place = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        problem = " ".join((error.problem or "not YAML").split())
+        raise ConfigError(f"{path}{place}: not as YAML should be: {problem}") from None
     except yaml.YAMLError as error:
         raise ConfigError(f"{path}: not YAML: {' '.join(str(error).split())}") from None
     if content is None:
@@ -129,20 +137,34 @@ def nearest_key(key: str) -> str:
 
 
 def _explain(error: ErrorDetails) -> str:
-    tags = {"law", "line"} if error["loc"][:2] == ("sweep", "focus") else set()
-    path = ".".join(str(part) for part in error["loc"] if part not in tags)
+    place = [str(part) for part in error["loc"]]
+    if place[:2] == ["sweep", "focus"]:
+        del place[2:3]  # which of the two kinds it was read as
+    path = ".".join(place)
+    if "." in place[-1] and error["type"] == "extra_forbidden":
+        return f"{path}: unknown key; keys nest, so write {place[-1].replace('.', ': {')}: ...}}"
     if error["type"] == "extra_forbidden":
         return f"{path}: unknown key; the nearest known one is {nearest_key(path)}"
     if error["type"] == "missing":
         return f"{path}: missing; it has no default, so give it a value"
     message = error["msg"].removeprefix("Value error, ").replace("Input should", "it should")
     if path == "run":
-        message = "it should be a plain name: letters, digits, '.', '_' and '-', no path"
+        message = "it should be a plain name as text: letters, digits, '.', '_' and '-', no path"
+        if not isinstance(error["input"], str):
+            message += "; put it in quotes"
     elif error["type"] in {"model_type", "model_attributes_type"}:
         message = "it should be a mapping of keys to values"
     elif path == "sweep.focus":
-        message = "it should be 'law', or {slope: 0.581, intercept: 69 nm}"
-    elif "length" not in message and _is_length(path):
+        message = (
+            "it should be 'law', or {slope: 0.581, intercept: 69 nm}; slope 0 is a fixed focus"
+        )
+    elif error["type"] == "literal_error" and isinstance(error["input"], str):
+        known = re.findall(r"'([^']+)'", message)
+        nearest = difflib.get_close_matches(error["input"], known, n=1, cutoff=0)[0]
+        message = f"the nearest that is known is '{nearest}'; {message}"
+    elif error["type"] == "int_type":
+        message = "it should be a whole number, written out as digits"
+    elif error["type"] in {"greater_than_equal", "less_than_equal"} and _is_length(path):
         message += " um"
     return f"{path}: {error['input']!r} given; {message}"
 
@@ -176,8 +198,7 @@ def highest_focus(config: Config) -> tuple[str, float]:
     }
     if isinstance(config.sweep.focus, FocusLine):
         ends = np.array([config.sweep.diameters.start, config.sweep.diameters.stop])
-        line = config.sweep.focus.slope * ends + config.sweep.focus.intercept
-        foci["sweep.focus"] = float(line.max())
+        foci["sweep.focus"] = float(config.sweep.focus.at(ends).max())
     return max(foci.items(), key=lambda item: item[1])
 
 
@@ -212,16 +233,41 @@ def _impossible(config: Config) -> Iterator[str]:
 
 def remarks(config: Config) -> list[str]:
     """Say what is possible but likely not meant, a line each."""
+    said = []
     band, diameters = config.spectrum.wavelength, config.sweep.diameters
-    slope = config.scene.refractive_index.neuron * 2 * np.pi * (1 / band.min + 1 / band.max)
+    n_neuron = config.scene.refractive_index.neuron
+    k_min, k_max = 2 * np.pi / band.max, 2 * np.pi / band.min
     step = (diameters.stop - diameters.start) / (diameters.num - 1)
-    if step <= np.pi / slope:
-        return []
-    return [
-        f"sweep.diameters: a step of {format_length(round(step, 6))} is above "
-        f"π/(n_neuron (k_min + k_max)) = {format_length(round(np.pi / slope, 6))}, so the "
-        "unwrapped phase is ambiguous and its slope can be wrong; raise sweep.diameters.num"
-    ]
+    largest = aliasing_step(n_neuron, k_min, k_max)
+    if step > largest:
+        said.append(
+            f"sweep.diameters: a step of {step:.6g} um is above π/(n_neuron (k_min + k_max)) = "
+            f"{largest:.6g} um, so the unwrapped phase is ambiguous and its slope can be wrong; "
+            "raise sweep.diameters.num"
+        )
+    oscillations = n_neuron * (k_max - k_min) / np.pi  # of cos(2ndk) over the band, per µm
+    if oscillations * diameters.start < 1:
+        said.append(
+            f"sweep.diameters.start: {format_length(diameters.start)} is less than one oscillation "
+            f"of the spectrum, {1 / oscillations:.3g} um, so its phase means little; raise it or "
+            "widen spectrum.wavelength"
+        )
+    needed = int(np.ceil(2 * oscillations * diameters.stop)) + 1
+    if config.spectrum.samples < needed:
+        said.append(
+            f"spectrum.samples: {config.spectrum.samples} do not resolve the oscillations of the "
+            f"largest diameter; give {needed} or more"
+        )
+    fitted = config.focus_law.diameters
+    beyond = diameters.start < fitted.start or diameters.stop > fitted.stop
+    if config.sweep.focus == "law" and beyond:
+        said.append(
+            f"sweep.diameters: from {format_length(diameters.start)} to "
+            f"{format_length(diameters.stop)} is beyond the diameters that the focus law is fitted "
+            f"to, {format_length(fitted.start)} to {format_length(fitted.stop)}; widen "
+            "focus_law.diameters"
+        )
+    return said
 
 
 def parts_of(config: Config, *keys: str) -> dict[str, object]:

@@ -9,6 +9,7 @@ from scipy.signal import get_window
 
 from octsim.config import Config, Processing
 from octsim.datasets import make
+from octsim.plates import ideal_spectra, predicted_phase_slope
 from octsim.spectrum import wavenumbers
 
 
@@ -88,18 +89,6 @@ def phase_slopes(
     return PhaseSlopes(component, by_component, strongest)
 
 
-def ideal_spectra(
-    n_neuron: float, diameter: NDArray[np.float64], wavenumber: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Spectra cos(2ndk) of two weak reflections a distance d apart (thesis §2.2), shape (D, K)."""
-    return np.cos(2 * n_neuron * np.outer(diameter, wavenumber))
-
-
-def predicted_phase_slope(n_neuron: float, wavenumber: NDArray[np.float64]) -> float:
-    """Phase slope n (k_min + k_max) (thesis eq. (2)), in rad/µm = mrad/nm."""
-    return float(n_neuron * (wavenumber[0] + wavenumber[-1]))
-
-
 def fourier(config: Config, spectra: xr.Dataset) -> xr.Dataset:
     """Take the Fourier transform of each spectrum.
 
@@ -141,7 +130,7 @@ def phase_slope(config: Config, transformed: xr.Dataset) -> xr.Dataset:
     slopes = phase_slopes(diameter, transformed["magnitude"].values, transformed["phase"].values)
     ideal = fourier_components(ideal_spectra(n_neuron, diameter, k), config.processing)
     ideals = phase_slopes(diameter, np.abs(ideal), np.angle(ideal))
-    predicted = predicted_phase_slope(n_neuron, k)
+    predicted = predicted_phase_slope(n_neuron, k[0], k[-1])
     deviation = slopes.strongest - predicted
     largest = int(np.abs(deviation).argmax())
     return make(
@@ -165,4 +154,15 @@ def phase_slope(config: Config, transformed: xr.Dataset) -> xr.Dataset:
         },
         {"diameter": diameter},
         __name__,
+    )
+
+
+def summary(slopes: xr.Dataset) -> str:
+    """Say in one line what a run found."""
+    value = {str(name): float(slopes[name]) for name in slopes.data_vars if not slopes[name].dims}
+    return (
+        f"phase slope {value['mean_phase_slope']:.3f} ± "
+        f"{value['phase_slope_standard_deviation']:.3f} mrad/nm (mean ± scatter over the "
+        f"diameters), prediction {value['predicted_phase_slope']:.3f}; largest deviation from it "
+        f"{value['largest_deviation']:+.3f} at {value['largest_deviation_diameter']:.4g} um"
     )

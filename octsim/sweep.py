@@ -8,6 +8,7 @@ from octsim.config import Config, FocusLine
 from octsim.datasets import make
 from octsim.detection import Outcome
 from octsim.errors import OctsimError
+from octsim.focus import FitStatus
 from octsim.simulation import tracer
 from octsim.spectrum import intensity, wavenumbers
 from octsim.threads import each
@@ -36,15 +37,23 @@ def sweep_foci(config: Config, law: xr.Dataset | None) -> NDArray[np.float64]:
     """
     diameters = config.sweep.diameters.values()
     if isinstance(config.sweep.focus, FocusLine):
-        return config.sweep.focus.slope * diameters + config.sweep.focus.intercept
+        return config.sweep.focus.at(diameters)
     remedy = "or give one as sweep.focus: {slope: 0.581, intercept: 69 nm}"
-    if law is None or not np.isfinite(law["slope"]):
-        raise OctsimError(
-            "sweep.focus: 'law' given, but there is no law, as not every diameter of "
-            "focus_law.diameters has a peak of intensity between the foci of focus_law.fraction "
-            f"(status in gaussian_fits.nc says which); widen the fractions, {remedy}"
+    if law is None:
+        raise OctsimError(f"sweep.focus: 'law' given, so fit and pass the focus law, {remedy}")
+    if not np.isfinite(law["slope"]):
+        failed = ", ".join(
+            f"{diameter:.4g} um ({FitStatus(status).name.lower()})"
+            for diameter, status in zip(law["diameter"].values, law["status"].values, strict=True)
+            if status != FitStatus.FITTED
         )
-    foci: NDArray[np.float64] = float(law["slope"]) * diameters + float(law["intercept"])
+        raise OctsimError(
+            f"sweep.focus: 'law' given, but there is no law: no Gaussian fits at {failed}; change "
+            f"focus_law.diameters, or give focus_law.fraction a wider range or more steps, {remedy}"
+        )
+    foci = FocusLine.model_construct(
+        slope=float(law["slope"]), intercept=float(law["intercept"])
+    ).at(diameters)
     if not foci.max() < config.objective.focus_distance:
         raise OctsimError(
             f"objective.focus_distance: {config.objective.focus_distance} um given, but the fitted "

@@ -9,8 +9,13 @@ Result = TypeVar("Result")
 
 
 def each(work: Callable[[Point], Result], points: Iterable[Point], threads: int) -> list[Result]:
-    """Do the same work for every point; results in the points' order, whatever the threads."""
-    if threads == 1:
-        return [work(point) for point in points]
-    with ThreadPoolExecutor(threads) as pool:
+    """Do the same work for every point; results in the points' order, whatever the threads.
+
+    One thread is a thread of its own too: an interrupt (Ctrl-C) then reaches this one, which
+    waits, and drops the points that have not begun.
+    """
+    pool = ThreadPoolExecutor(threads)
+    try:
         return list(pool.map(work, points))
+    finally:
+        pool.shutdown(cancel_futures=True)

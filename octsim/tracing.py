@@ -1,6 +1,6 @@
 """The ray tree: every ray splits at every surface it meets, until it is detected or gone."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba.extending import register_jitable
@@ -145,7 +145,8 @@ def _trace(
     focus: float,
     max_intersections: int,
     min_amplitude: float,
-) -> Detections:
+) -> tuple[Any, ...]:
+    # a plain tuple: making a named one on the way out crashes when an interrupt is waiting
     capacity = beam.vx.size
     ray = np.empty(capacity, np.int64)
     path = np.empty(capacity, np.int64)
@@ -234,7 +235,7 @@ def _trace(
                     medium, s, meetings, code,
                 )  # fmt: skip
                 waiting += 1
-    return Detections(
+    return (
         ray[:detected].copy(),
         path[:detected].copy(),
         amplitude[:detected].copy(),
@@ -284,10 +285,9 @@ def trace(
             f"focus: {focus} µm given; it must be below the focus distance, "
             f"{detector.focus_distance} µm"
         )
-    traced: Detections = _trace(
-        scene.arrays(), beam, detector, focus, max_intersections, min_amplitude
+    return Detections(
+        *_trace(scene.arrays(), beam, detector, focus, max_intersections, min_amplitude)
     )
-    return traced
 
 
 def path_name(code: int, surface_names: str = "PC") -> str:

@@ -1,8 +1,7 @@
 """Lengths with their unit: read from text, kept as micrometres, written back as text."""
 
-import math
 import re
-from decimal import Decimal
+from decimal import Decimal, DecimalException
 from functools import cache
 from typing import Annotated, Any
 
@@ -53,10 +52,10 @@ def parse_length(text: object) -> float:
         length = float(quantity.to("micrometer").magnitude)
     except pint.DimensionalityError:
         raise ValueError(f"'{unit}' is not a unit of length; {_EXAMPLES}") from None
-    except pint.UndefinedUnitError:
+    except DecimalException:
+        raise ValueError(f"far out of range; {_EXAMPLES}") from None
+    except (pint.UndefinedUnitError, ValueError):  # pint calls 'nan' and the like a scaling factor
         raise ValueError(f"'{unit}' is not a unit that is known; {_EXAMPLES}") from None
-    if math.isinf(length):
-        raise ValueError(f"a length must be finite; {_EXAMPLES}")
     return length
 
 

@@ -9,12 +9,11 @@ from octsim.loading import load_config
 from octsim.phase import (
     centred,
     fourier_components,
-    ideal_spectra,
     optical_depths,
     phase_slopes,
-    predicted_phase_slope,
     windowed,
 )
+from octsim.plates import ideal_spectra, predicted_phase_slope
 from octsim.spectrum import wavenumbers
 
 CONFIG = load_config()
@@ -65,7 +64,7 @@ def test_depth_is_that_of_the_oscillation_on_a_component() -> None:
 
 
 def test_the_prediction_is_the_thesis_s() -> None:
-    assert predicted_phase_slope(1.39, K) == pytest.approx(23.140, abs=5e-4)
+    assert predicted_phase_slope(1.39, K[0], K[-1]) == pytest.approx(23.140, abs=5e-4)
 
 
 def test_ideal_spectra_slope_about_the_prediction() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from octsim.figures.style import BLACK, BLUE, ORANGE, label
+from octsim.figures.style import BLACK, BLUE, ORANGE, label, title
 
 
 def figure_6(scan: xr.Dataset) -> Figure:
@@ -19,7 +19,7 @@ def figure_6(scan: xr.Dataset) -> Figure:
     light.semilogy(focus, scan["intensity"], color=BLUE)
     light.set_ylabel(label(scan["intensity"], "mean intensity\n(1 = all light in phase)"))
     light.set_xlabel(label(focus))
-    rays.set_title(f"Focus scan, diameter {float(scan['diameter']):g} µm")
+    rays.set_title(title(scan, f"Focus scan, diameter {float(scan['diameter']):g} µm"))
     return figure
 
 
@@ -34,7 +34,7 @@ def figure_7(fits: xr.Dataset, law: xr.Dataset) -> Figure:
     slope, intercept = float(law["slope"]), float(law["intercept"])
     if np.isfinite(slope):
         line = slope * diameter + intercept
-        text = f"z = {slope:.3f} d {intercept:+.3f} µm"
+        text = f"z = {slope:.3f} d {'+' if intercept >= 0 else '−'} {abs(intercept):.3f} µm"
         foci.plot(diameter, line, color=BLACK, linestyle="--", label=text)
         rest.axhline(0, color=BLACK, linestyle="--")
         # the errors are too small to see beside the line itself
@@ -42,6 +42,6 @@ def figure_7(fits: xr.Dataset, law: xr.Dataset) -> Figure:
     foci.set_ylabel(label(centre, "best focus"))
     rest.set_ylabel("Off the line (nm)")
     rest.set_xlabel(label(diameter))
-    foci.set_title("Focus law")
+    foci.set_title(title(law, "Focus law"))
     foci.legend()
     return figure

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from octsim.figures.style import BLACK, GREEN, component_colour, label
+from octsim.figures.style import BLACK, GREEN, component_colour, label, title
 
 _MARKERS = ".x+1234"
 
@@ -39,7 +39,7 @@ def figure_10(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
     _draw_components(axes, diameter.values, slopes["component"].values, fourier["magnitude"])
     axes.set_xlabel(label(diameter))
     axes.set_ylabel(label(fourier["magnitude"], "magnitude (sum over the samples)"))
-    axes.set_title("Magnitude (solid where strongest)")
+    axes.set_title(title(slopes, "Magnitude (solid where strongest)"))
     axes.legend()
     return figure
 
@@ -53,7 +53,7 @@ def figure_11(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
     _draw_components(axes, diameter.values, slopes["component"].values, unwrapped)
     axes.set_xlabel(label(diameter))
     axes.set_ylabel(label(fourier["phase"], "phase, unwrapped"))
-    axes.set_title("Phase (solid where strongest)")
+    axes.set_title(title(slopes, "Phase (solid where strongest)"))
     axes.legend()
     return figure
 
@@ -71,12 +71,14 @@ def figure_12(slopes: xr.Dataset) -> Figure:
         color=GREEN, linestyle="--", label="ideal spectrum cos(2ndk)",
     )  # fmt: skip
     predicted = float(slopes["predicted_phase_slope"])
-    axes.axhline(predicted, color=BLACK, linestyle="-.", label=f"prediction {predicted:.2f}")
+    axes.axhline(
+        predicted, color=BLACK, linestyle="-.", label=f"prediction {predicted:.2f} mrad/nm"
+    )
     shown = np.concatenate((slopes["phase_slope"].values, slopes["ideal_phase_slope"].values))
     margin = 0.15 * max(float(np.ptp(shown)), 0.1)
     axes.set_ylim(shown.min() - margin, shown.max() + 3 * margin)
     axes.set_xlabel(label(diameter))
     axes.set_ylabel(label(slopes["phase_slope"], "phase slope"))
-    axes.set_title("Phase slope (solid where strongest)")
+    axes.set_title(title(slopes, "Phase slope (solid where strongest)"))
     axes.legend(ncols=2)
     return figure

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from octsim.config import Processing
-from octsim.figures.style import BLUE, GREEN, SKY, component_colour, label
+from octsim.figures.style import BLUE, GREEN, SKY, component_colour, label, title
 from octsim.phase import centred, windowed
 
 DIAMETER = 1.4
@@ -33,7 +33,7 @@ def figure_8(spectra: xr.Dataset, processing: Processing) -> Figure:
         axes.plot(k, values, color=colour, linestyle=line, label=text)
     axes.set_xlabel(label(k))
     axes.set_ylabel("Intensity (largest = 1)")
-    axes.set_title(f"Spectrum, diameter {float(spectrum['diameter']):.4g} µm")
+    axes.set_title(title(spectra, f"Spectrum, diameter {float(spectrum['diameter']):.4g} µm"))
     figure.legend(loc="outside lower center", ncols=3)
     return figure
 
@@ -64,6 +64,6 @@ def figure_9(fourier: xr.Dataset) -> Figure:
 
     depth = axes.secondary_xaxis("top", functions=(to_depth, to_component))
     depth.set_xlabel(label(shown["depth"], "optical depth"))
-    axes.set_title(f"Fourier transform, diameter {float(shown['diameter']):.4g} µm")
+    axes.set_title(title(fourier, f"Fourier transform, diameter {float(shown['diameter']):.4g} µm"))
     axes.legend()
     return figure

@@ -1,5 +1,6 @@
 """One look for all figures: colour-blind safe, told apart in grey, units on every axis."""
 
+import json
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
@@ -26,7 +27,7 @@ _LOOK: Any = {
     "figure.figsize": (6.4, 4.0),
     "font.size": 10,
     "grid.alpha": 0.25,
-    "legend.frameon": False,
+    "legend.edgecolor": "none",
     "lines.linewidth": 1.5,
     "svg.hashsalt": "octsim",
 }
@@ -49,6 +50,11 @@ def label(variable: xr.DataArray, name: str | None = None) -> str:
     symbol = _SYMBOLS.get(units, units)
     text = text[:1].upper() + text[1:]
     return f"{text} ({symbol})" if symbol else text
+
+
+def title(dataset: xr.Dataset, text: str) -> str:
+    """Title of a figure: what it shows, and of which run."""
+    return f"{text} · run {json.loads(dataset.attrs['config'])['run']}"
 
 
 def save(figure: Figure, path: Path) -> None:

@@ -1,7 +1,10 @@
 """What every job does around its stage: read the config, log, and say in one line what failed."""
 
+import ctypes
 import json
 import logging
+import os
+import signal
 import sys
 import warnings
 from collections.abc import Iterator
@@ -16,9 +19,19 @@ from octsim.errors import OctsimError, OctsimWarning
 from octsim.loading import load_config
 
 
+def end_with_the_run() -> None:
+    """Have this job killed when the run is: none goes on to write beside the next run's."""
+    if sys.platform == "linux":
+        set_parent_death_signal = 1
+        ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL)
+    if os.environ.get("OCTSIM_RUN") != str(os.getppid()):
+        sys.exit("octsim: the run that started this job is gone")
+
+
 @contextmanager
 def job(snakemake: Any) -> Iterator[Config]:
     """Give a job its config; log what it says; end it with one line if a user can mend it."""
+    end_with_the_run()
     logging.basicConfig(filename=snakemake.log[0], level=logging.INFO, format="%(message)s")
     logging.captureWarnings(capture=True)
     warnings.simplefilter("ignore", OctsimWarning)  # the workflow has said these once
@@ -27,7 +40,6 @@ def job(snakemake: Any) -> Iterator[Config]:
     except OctsimError as error:
         logging.error("%s", error)
         sys.exit(f"octsim: {error}")
-    logging.info("done")
 
 
 def count_points(snakemake: Any, dataset: xr.Dataset) -> None:

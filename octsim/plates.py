@@ -1,0 +1,21 @@
+"""What two weak reflections a distance d apart would give: the thesis's ideal (its §2.2)."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def ideal_spectra(
+    n_neuron: float, diameter: NDArray[np.float64], wavenumber: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Spectra cos(2ndk) for diameters (D,) and wavenumbers (K,), shape (D, K)."""
+    return np.cos(2 * n_neuron * np.outer(diameter, wavenumber))
+
+
+def predicted_phase_slope(n_neuron: float, k_min: float, k_max: float) -> float:
+    """Phase slope n (k_min + k_max) (thesis eq. (2)), in rad/µm = mrad/nm."""
+    return n_neuron * (k_min + k_max)
+
+
+def aliasing_step(n_neuron: float, k_min: float, k_max: float) -> float:
+    """Largest diameter step (µm) over which the phase moves by no more than π."""
+    return np.pi / predicted_phase_slope(n_neuron, k_min, k_max)
