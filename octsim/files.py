@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,8 +16,12 @@ def reason(error: Exception) -> str:
     return " ".join(said.split()) or type(error).__name__
 
 
+# snakemake's own notes and the copies that it keeps of files being replaced need some room too
+SPACE = 32_000_000
+
+
 def require_folder(path: Path) -> None:
-    """Check that a folder is there, or can be made, and that files can be written in it.
+    """Check that a folder is there, or can be made, can be written in, and has room.
 
     Raises
     ------
@@ -28,6 +33,12 @@ def require_folder(path: Path) -> None:
         raise FileError(f"{path}: can't be a folder, as {there.name} is a file; move that away")
     if not os.access(there, os.W_OK | os.X_OK):
         raise FileError(f"{path}: can't be written; make {there} writable or run elsewhere")
+    free = shutil.disk_usage(there).free
+    if free < SPACE:
+        raise FileError(
+            f"{path}: the disk is full ({free / 1e6:.0f} MB free, {SPACE / 1e6:.0f} MB needed); "
+            "make room and run again"
+        )
 
 
 @contextmanager

@@ -34,6 +34,7 @@ def job(snakemake: Any) -> Iterator[Config]:
     end_with_the_run()
     logging.basicConfig(filename=snakemake.log[0], level=logging.INFO, format="%(message)s")
     logging.captureWarnings(capture=True)
+    logging.raiseExceptions = False  # a full disk is said once, by what hits it
     warnings.simplefilter("ignore", OctsimWarning)  # the workflow has said these once
     try:
         yield load_config(snakemake.config)
