@@ -22,6 +22,8 @@ class Beam(NamedTuple):
     """Unit direction, z component, positive, (N,)."""
     amplitude: NDArray[np.float64]
     """Amplitude at launch, (N,); sums to one."""
+    number: NDArray[np.int64]
+    """Number of each ray, (N,), whatever the order in which they stand here."""
 
 
 def aperture_radius(objective: Objective, n_glass: float) -> float:
@@ -69,5 +71,17 @@ def aim(
 def vogel_beam(objective: Objective, tracing: Tracing, n_glass: float) -> Beam:
     """Make the beam of the thesis: a Vogel spiral on the objective, each ray of amplitude 1/N."""
     x, y = vogel_spiral(tracing.rays, aperture_radius(objective, n_glass))
-    vx, vy, vz = aim(x, y, objective.focus_distance)
-    return Beam(vx, vy, vz, np.full(tracing.rays, 1 / tracing.rays))
+    number = neighbourly_order(x, y)
+    vx, vy, vz = aim(x[number], y[number], objective.focus_distance)
+    return Beam(vx, vy, vz, np.full(tracing.rays, 1 / tracing.rays), number)
+
+
+def neighbourly_order(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Order points of the aperture so that those next to each other fare alike.
+
+    The scene is symmetric in x and y, and a ray's |x| decides the most: strips of |x|, in them |y|.
+    The tree is traced faster that way; its result does not depend on the order.
+    """
+    strips = int(math.sqrt(x.size / 64)) + 1
+    strip = np.floor(np.abs(x) * (strips / max(float(np.abs(x).max()), np.finfo(float).tiny)))
+    return np.lexsort((np.abs(y), strip))

@@ -64,67 +64,79 @@ def detector_of(config: Config) -> Detector:
     )
 
 
-@register_jitable
-def falloff(radius: float, detector_radius: float) -> float:
-    """Parabolic falloff of the detected amplitude, 1 − (ρ/R)² (thesis §4.4)."""
-    ratio = radius / detector_radius
-    return 1 - ratio * ratio
+@register_jitable(forceinline=True)
+def arrival(height: float, position: Vector, direction: Vector) -> tuple[float, float]:
+    """Trace a ray to a horizontal plane, onwards or back.
+
+    Returns
+    -------
+    distance : float
+        Distance along the ray, µm; negative if the plane lies behind.
+    squared_radius : float
+        Squared distance from the optical axis there, µm².
+    """
+    distance = (height - position.z) / direction.z
+    x = position.x + distance * direction.x
+    y = position.y + distance * direction.y
+    return distance, x * x + y * y
 
 
-@register_jitable
-def lens_correction(radius: float, magnification: float, focal_length: float) -> float:
+@register_jitable(forceinline=True)
+def fate(detector: Detector, at_focus: float, at_objective: float) -> int:
+    """Tell whether a ray is detected, from its squared radii (µm²) at the focus and the objective.
+
+    By the lens's rule 3 (thesis §4.4) a ray that passes the objective reaches the fibre at the
+    point whose image is where it would have left the focal plane.
+    """
+    if not at_objective <= (RIM * detector.objective_radius) ** 2:
+        return Outcome.OFF_OBJECTIVE
+    if not at_focus < detector.radius**2:
+        return Outcome.OFF_DETECTOR
+    return Outcome.DETECTED
+
+
+@register_jitable(forceinline=True)
+def falloff(squared_radius: float, detector_radius: float) -> float:
+    """Parabolic falloff of the detected amplitude, 1 − (ρ/R_det)² (thesis §4.4)."""
+    return 1 - squared_radius / (detector_radius * detector_radius)
+
+
+@register_jitable(forceinline=True)
+def lens_correction(squared_radius: float, magnification: float, focal_length: float) -> float:
     r"""Optical path from the focal point to the fibre, beyond that on the axis, in µm.
 
     .. math:: M (\sqrt{f^2 + \rho^2} - f) = M \rho^2 / (\sqrt{f^2 + \rho^2} + f)
 
     (thesis §4.4), in the form that does not cancel.
     """
-    squared = radius * radius
-    return magnification * squared / (math.sqrt(focal_length**2 + squared) + focal_length)
+    reach = math.sqrt(focal_length * focal_length + squared_radius) + focal_length
+    return magnification * squared_radius / reach
 
 
-@register_jitable
-def detect(
-    detector: Detector, focus: float, n_glass: float, position: Vector, direction: Vector
-) -> tuple[int, float, float]:
-    """Trace a ray that goes down through the glass to the objective, and back to the focal plane.
+@register_jitable(forceinline=True)
+def collect(
+    detector: Detector, n_glass: float, to_focus: float, at_focus: float
+) -> tuple[float, float]:
+    """Weigh a detected ray, and give the optical path that it has still to go.
 
-    By the lens's rules 3 and 4 (thesis §4.4) a ray reaches the fibre at the point whose image is
-    where it would have left the focal plane, with the path from there; path up to the focal plane
-    is negative when that lies behind the ray.
+    By the lens's rule 4 (thesis §4.4) that is the path to where it would have left the focal plane,
+    negative when that lies behind it, and the lens's correction.
 
     Parameters
     ----------
     detector : Detector
         The receiver.
-    focus : float
-        Height of the focal plane, µm.
     n_glass : float
         Refractive index below the scene.
-    position, direction : Vector
-        Point on the ray (µm) and its unit direction, downwards.
+    to_focus, at_focus : float
+        Distance to the focal plane (µm) and squared radius there (µm²), from `arrival`.
 
     Returns
     -------
-    outcome : int
-        `Outcome.DETECTED`, `OFF_DETECTOR` or `OFF_OBJECTIVE`.
     weight : float
         Factor on the amplitude.
     optical_path_length : float
         What is added to the ray's path, µm.
     """
-    to_objective = (focus - detector.focus_distance - position.z) / direction.z
-    x = position.x + to_objective * direction.x
-    y = position.y + to_objective * direction.y
-    if not x * x + y * y <= (RIM * detector.objective_radius) ** 2:
-        return Outcome.OFF_OBJECTIVE, 0.0, 0.0
-    to_focus = (focus - position.z) / direction.z
-    x = position.x + to_focus * direction.x
-    y = position.y + to_focus * direction.y
-    radius = math.sqrt(x * x + y * y)
-    if not radius < detector.radius:
-        return Outcome.OFF_DETECTOR, 0.0, 0.0
-    path = n_glass * to_focus + lens_correction(
-        radius, detector.magnification, detector.focal_length
-    )
-    return Outcome.DETECTED, falloff(radius, detector.radius), path
+    correction = lens_correction(at_focus, detector.magnification, detector.focal_length)
+    return falloff(at_focus, detector.radius), n_glass * to_focus + correction

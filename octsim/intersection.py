@@ -11,7 +11,7 @@ from numba.extending import register_jitable
 from octsim.optics import Vector
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def meet_plane(height: float, above: bool, position: Vector, direction: Vector) -> float:
     """Distance along a ray to a horizontal plane (thesis fig. 2).
 
@@ -29,12 +29,12 @@ def meet_plane(height: float, above: bool, position: Vector, direction: Vector) 
     float
         Distance in µm; infinite if the ray does not head for the plane.
     """
-    if (direction.z < 0) == above and direction.z != 0:
-        return (height - position.z) / direction.z
-    return math.inf
+    level = direction.z == 0
+    distance = (height - position.z) / (1.0 if level else direction.z)
+    return distance if (direction.z < 0) == above and not level else math.inf
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def enter_cylinder(
     x: float, z: float, radius: float, position: Vector, direction: Vector
 ) -> tuple[float, float]:
@@ -65,13 +65,12 @@ def enter_cylinder(
     middle = to_x * direction.x + to_z * direction.z
     offset = (to_x * direction.z - to_z * direction.x) / across
     h_squared = (radius - offset) * (radius + offset)
-    if middle > 0 and h_squared > 0:
-        h = math.sqrt(h_squared)
-        return (middle / across - h) / across, h * across / radius
-    return math.inf, 0.0
+    h = math.sqrt(max(h_squared, 0.0))
+    distance = (middle / across - h) / across
+    return (distance if middle > 0 and h_squared > 0 else math.inf), h * across / radius
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def cross_cylinder(
     x: float, z: float, radius: float, position: Vector, direction: Vector
 ) -> tuple[float, float]:
@@ -83,7 +82,5 @@ def cross_cylinder(
     `enter_cylinder`; infinite if the ray does not head inwards.
     """
     middle = (x - position.x) * direction.x + (z - position.z) * direction.z
-    if middle > 0:
-        across_squared = direction.x * direction.x + direction.z * direction.z
-        return 2 * middle / across_squared, middle / radius
-    return math.inf, 0.0
+    across_squared = direction.x * direction.x + direction.z * direction.z
+    return (2 * middle / across_squared if middle > 0 else math.inf), middle / radius

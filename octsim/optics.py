@@ -17,7 +17,7 @@ class Vector(NamedTuple):
     z: float
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def reflect(direction: Vector, normal: Vector, cos_i: float) -> Vector:
     r"""Turn a direction by the law of reflection.
 
@@ -47,7 +47,7 @@ def reflect(direction: Vector, normal: Vector, cos_i: float) -> Vector:
     )
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def cos_transmitted_squared(n_i: float, n_t: float, cos_i: float) -> float:
     r"""Square of the cosine of the angle of refraction; negative beyond the critical angle.
 
@@ -62,7 +62,7 @@ def cos_transmitted_squared(n_i: float, n_t: float, cos_i: float) -> float:
     return (1 - eta) * (1 + eta) + eta * eta * cos_i * cos_i
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def refract(
     direction: Vector, normal: Vector, n_i: float, n_t: float, cos_i: float, cos_t: float
 ) -> Vector:
@@ -82,7 +82,7 @@ def refract(
     )
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def fresnel(n_i: float, n_t: float, cos_i: float, cos_t: float) -> tuple[float, float]:
     r"""Amplitude coefficients of reflection and transmission for unpolarised light.
 

@@ -1,4 +1,8 @@
-"""The ray tree: every ray splits at every surface it meets, until it is detected or gone."""
+"""The ray tree: every ray splits at every surface it meets, until it is detected or gone.
+
+Rays that are neighbours in the aperture go through the tree together, as a block of lanes, along
+one light path after the other, depth first.
+"""
 
 from typing import Any, NamedTuple
 
@@ -8,20 +12,34 @@ from numpy.typing import NDArray
 
 from octsim.beam import Beam
 from octsim.compiled import compiled
-from octsim.detection import Detector, Outcome, detect
-from octsim.intersection import cross_cylinder, enter_cylinder, meet_plane
-from octsim.optics import Vector, cos_transmitted_squared, fresnel, reflect, refract
-from octsim.scene import Medium, Scene, Shape, Surfaces
+from octsim.detection import Detector, Outcome, arrival, collect, fate
+from octsim.faces import Faces, faces_of
+from octsim.lanes import (
+    AMPLITUDE,
+    BLOCK,
+    LANES,
+    PATH,
+    RAY,
+    Block,
+    advance_chosen,
+    choose,
+    direction,
+    keep,
+    launch,
+    meet_nearest,
+    position,
+    split,
+)
+from octsim.scene import Scene
 
-NOWHERE = -1
 OUTCOMES = len(Outcome)
 
 
 class Detections(NamedTuple):
-    """Rays that reached the detector, D of them, by launched ray and then depth first."""
+    """Rays that reached the detector, D of them, always in the same order."""
 
     ray: NDArray[np.int64]
-    """Launched ray that each comes from, (D,)."""
+    """Number of the launched ray that each comes from, (D,)."""
     path: NDArray[np.int64]
     """Code of the light path, (D,); `path_name` reads it."""
     amplitude: NDArray[np.float64]
@@ -34,112 +52,98 @@ class Detections(NamedTuple):
     """How often each `Outcome` came about, (7,)."""
 
 
-class _Stack(NamedTuple):
-    """Segments that are still to be traced."""
+class _Found(NamedTuple):
+    """Room for detected rays."""
 
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    z: NDArray[np.float64]
-    vx: NDArray[np.float64]
-    vy: NDArray[np.float64]
-    vz: NDArray[np.float64]
+    ray: NDArray[np.int64]
+    path: NDArray[np.int64]
     amplitude: NDArray[np.float64]
     optical_path_length: NDArray[np.float64]
-    medium: NDArray[np.int64]
-    surface: NDArray[np.int64]
-    """Surface that the segment starts on."""
+
+
+class _Waiting(NamedTuple):
+    """Blocks that are still to be traced, the next one last."""
+
+    blocks: NDArray[np.float64]
+    lanes: NDArray[np.int64]
+    departure: NDArray[np.int64]
     meetings: NDArray[np.int64]
     path: NDArray[np.int64]
 
 
-@register_jitable
-def _empty_stack(size: int) -> _Stack:
-    return _Stack(
-        np.empty(size), np.empty(size), np.empty(size),
-        np.empty(size), np.empty(size), np.empty(size),
-        np.empty(size), np.empty(size),
-        np.empty(size, np.int64), np.empty(size, np.int64),
+@register_jitable(forceinline=True)
+def _room_for_found(size: int) -> _Found:
+    return _Found(
+        np.empty(size, np.int64), np.empty(size, np.int64), np.empty(size), np.empty(size)
+    )
+
+
+@register_jitable(forceinline=True)
+def _doubled(found: _Found) -> _Found:
+    return _Found(
+        np.concatenate((found.ray, np.empty_like(found.ray))),
+        np.concatenate((found.path, np.empty_like(found.path))),
+        np.concatenate((found.amplitude, np.empty_like(found.amplitude))),
+        np.concatenate((found.optical_path_length, np.empty_like(found.optical_path_length))),
+    )
+
+
+@register_jitable(forceinline=True)
+def _room_for_waiting(size: int) -> _Waiting:
+    return _Waiting(
+        np.empty((size, BLOCK)), np.empty(size, np.int64), np.empty(size, np.int64),
         np.empty(size, np.int64), np.empty(size, np.int64),
     )  # fmt: skip
 
 
-@register_jitable
-def _push(
-    stack: _Stack,
-    top: int,
-    position: Vector,
-    direction: Vector,
-    amplitude: float,
-    optical_path_length: float,
-    medium: int,
-    surface: int,
-    meetings: int,
-    path: int,
-) -> None:
-    stack.x[top], stack.y[top], stack.z[top] = position
-    stack.vx[top], stack.vy[top], stack.vz[top] = direction
-    stack.amplitude[top] = amplitude
-    stack.optical_path_length[top] = optical_path_length
-    stack.medium[top] = medium
-    stack.surface[top] = surface
-    stack.meetings[top] = meetings
-    stack.path[top] = path
+@register_jitable(forceinline=True)
+def _wait(waiting: _Waiting, top: int, lanes: int, departure: int, meetings: int, path: int) -> int:
+    """Have the block above `top` wait, as the next; give the new top."""
+    waiting.lanes[top + 1] = lanes
+    waiting.departure[top + 1] = departure
+    waiting.meetings[top + 1] = meetings
+    waiting.path[top + 1] = path
+    return top + 1
 
 
-@register_jitable
-def nearest_surface(
-    surfaces: Surfaces, medium: int, standing_on: int, position: Vector, direction: Vector
-) -> tuple[int, float, float]:
-    """Find the surface that a ray meets next.
-
-    Only those that bound its medium can be; of a plane or the outside of a cylinder that it
-    stands on it can't meet any more.
-
-    Returns
-    -------
-    surface : int
-        Number of the surface; −1 if the ray meets none.
-    distance, cos_i : float
-        Distance to it (µm) and cosine of incidence there.
-    """
-    nearest, distance, cos_i = NOWHERE, np.inf, 0.0
-    for s in range(surfaces.shape.size):
-        inside = medium == surfaces.inner[s]
-        if not inside and medium != surfaces.outer[s]:
-            continue
-        if surfaces.shape[s] == Shape.PLANE:
-            if s == standing_on:
-                continue
-            to_surface = meet_plane(surfaces.z[s], not inside, position, direction)
-            cos_there = abs(direction.z)
-        elif inside:
-            to_surface, cos_there = cross_cylinder(
-                surfaces.x[s], surfaces.z[s], surfaces.radius[s], position, direction
-            )
-        else:
-            if s == standing_on:
-                continue
-            to_surface, cos_there = enter_cylinder(
-                surfaces.x[s], surfaces.z[s], surfaces.radius[s], position, direction
-            )
-        if to_surface < distance:
-            nearest, distance, cos_i = s, to_surface, cos_there
-    return nearest, distance, cos_i
-
-
-@register_jitable
-def normal_towards(surfaces: Surfaces, s: int, medium: int, position: Vector) -> Vector:
-    """Give the unit normal of surface `s` at a position on it, on the side of `medium`."""
-    side = -1.0 if medium == surfaces.inner[s] else 1.0
-    if surfaces.shape[s] == Shape.PLANE:
-        return Vector(0.0, 0.0, side)
-    scale = side / surfaces.radius[s]
-    return Vector((position.x - surfaces.x[s]) * scale, 0.0, (position.z - surfaces.z[s]) * scale)
+@register_jitable(forceinline=True)
+def _detect(
+    detector: Detector,
+    focus: float,
+    n_glass: float,
+    beam: Beam,
+    block: Block,
+    n: int,
+    code: int,
+    found: _Found,
+    detected: int,
+    outcomes: NDArray[np.int64],
+) -> tuple[_Found, int]:
+    """Note which of n lanes on their way to the objective are detected."""
+    to_focus, at_focus, at_objective = np.empty(LANES), np.empty(LANES), np.empty(LANES)
+    for i in range(n):
+        here, along = position(block, i), direction(block, i)
+        to_focus[i], at_focus[i] = arrival(focus, here, along)
+        _, at_objective[i] = arrival(focus - detector.focus_distance, here, along)
+    for i in range(n):
+        outcome = fate(detector, at_focus[i], at_objective[i])
+        outcomes[outcome] += 1
+        if outcome == Outcome.DETECTED:
+            if detected == found.ray.size:
+                found = _doubled(found)
+            weight, to_fibre = collect(detector, n_glass, to_focus[i], at_focus[i])
+            ray = int(block[RAY + i])
+            found.ray[detected] = beam.number[ray]
+            found.path[detected] = code
+            found.amplitude[detected] = beam.amplitude[ray] * block[AMPLITUDE + i] * weight
+            found.optical_path_length[detected] = block[PATH + i] + to_fibre
+            detected += 1
+    return found, detected
 
 
 @compiled()
 def _trace(
-    surfaces: Surfaces,
+    faces: Faces,
     beam: Beam,
     detector: Detector,
     focus: float,
@@ -147,99 +151,63 @@ def _trace(
     min_amplitude: float,
 ) -> tuple[Any, ...]:
     # a plain tuple: making a named one on the way out crashes when an interrupt is waiting
-    capacity = beam.vx.size
-    ray = np.empty(capacity, np.int64)
-    path = np.empty(capacity, np.int64)
-    amplitude = np.empty(capacity)
-    optical_path_length = np.empty(capacity)
-    detected, segments = 0, 0
+    found, detected, segments = _room_for_found(beam.vx.size), 0, 0
     outcomes = np.zeros(OUTCOMES, np.int64)
-    # a segment is replaced by at most two, so depth first one more waits at each meeting
-    stack = _empty_stack(max_intersections + 2)
-    index = surfaces.refractive_index
-    digits = 2 * surfaces.shape.size
+    # depth first: above each block on the way wait two for each face that it can meet
+    waiting = _room_for_waiting((2 * faces.kind.size + 1) * (max_intersections + 1))
+    distance, cos_i, cos_t = np.empty(LANES), np.empty(LANES), np.empty(LANES)
+    cos_met, wanted = np.empty(LANES), np.empty(LANES, np.bool_)
+    face, chosen = np.empty(LANES, np.int64), np.empty(LANES, np.int64)
 
-    for j in range(beam.vx.size):
-        faintest = min_amplitude * abs(beam.amplitude[j])
-        aim = Vector(beam.vx[j], beam.vy[j], beam.vz[j])
-        at_focus = Vector(0.0, 0.0, focus)
-        _push(stack, 0, at_focus, aim, beam.amplitude[j], 0.0, Medium.GLASS, NOWHERE, 0, 1)
-        waiting = 1
-        while waiting > 0:
-            waiting -= 1
-            segments += 1
-            top = waiting
-            start = Vector(stack.x[top], stack.y[top], stack.z[top])
-            along = Vector(stack.vx[top], stack.vy[top], stack.vz[top])
-            a, path_length = stack.amplitude[top], stack.optical_path_length[top]
-            medium, meetings, code = stack.medium[top], stack.meetings[top], stack.path[top]
-            s, distance, cos_i = nearest_surface(surfaces, medium, stack.surface[top], start, along)
-            if s == NOWHERE:
-                outcome: int = Outcome.ESCAPED
-                if medium == Medium.GLASS and along.z < 0:
-                    outcome, weight, to_fibre = detect(detector, focus, index[medium], start, along)
-                    if outcome == Outcome.DETECTED:
-                        if detected == ray.size:
-                            ray = np.concatenate((ray, np.empty_like(ray)))
-                            path = np.concatenate((path, np.empty_like(path)))
-                            amplitude = np.concatenate((amplitude, np.empty_like(amplitude)))
-                            optical_path_length = np.concatenate(
-                                (optical_path_length, np.empty_like(optical_path_length))
-                            )
-                        ray[detected] = j
-                        path[detected] = code
-                        amplitude[detected] = a * weight
-                        optical_path_length[detected] = path_length + to_fibre
-                        detected += 1
-                outcomes[outcome] += 1
+    for first in range(0, beam.vx.size, LANES):
+        count = min(LANES, beam.vx.size - first)
+        launch(beam, first, count, focus, waiting.blocks[0])
+        top = _wait(waiting, -1, count, 0, 0, 1)
+        while top >= 0:
+            n, d, m = waiting.lanes[top], waiting.departure[top], waiting.meetings[top]
+            code, block = waiting.path[top], waiting.blocks[top]
+            waiting.lanes[top] = 0  # done, but its children's blocks go above it
+            if n == 0:
+                top -= 1
                 continue
-            if meetings == max_intersections:
-                outcomes[Outcome.SPENT] += 1
+            segments += n
+            if faces.to_objective[d]:
+                found, detected = _detect(
+                    detector, focus, faces.n_i[0], beam, block, n, code, found, detected, outcomes
+                )
                 continue
-
-            n_i = index[medium]
-            position = Vector(
-                start.x + distance * along.x,
-                start.y + distance * along.y,
-                start.z + distance * along.z,
-            )
-            path_length += n_i * distance
-            normal = normal_towards(surfaces, s, medium, position)
-            beyond = surfaces.outer[s] if medium == surfaces.inner[s] else surfaces.inner[s]
-            n_t = index[beyond]
-            meetings += 1
-            code = code * digits + 2 * s
-
-            cos_t_squared = cos_transmitted_squared(n_i, n_t, cos_i)
-            if cos_t_squared < 0:
-                r = 1.0
-                outcomes[Outcome.TOTALLY_REFLECTED] += 1
-            else:
-                cos_t = np.sqrt(cos_t_squared)
-                r, t = fresnel(n_i, n_t, cos_i, cos_t)
-                if abs(a * t) < faintest:
-                    outcomes[Outcome.FAINT] += 1
-                else:
-                    onwards = refract(along, normal, n_i, n_t, cos_i, cos_t)
-                    _push(
-                        stack, waiting, position, onwards, a * t, path_length,
-                        beyond, s, meetings, code + 1,
-                    )  # fmt: skip
-                    waiting += 1
-            if abs(a * r) < faintest:
-                outcomes[Outcome.FAINT] += 1
-            else:
-                back = reflect(along, normal, cos_i)
-                _push(
-                    stack, waiting, position, back, a * r, path_length,
-                    medium, s, meetings, code,
-                )  # fmt: skip
-                waiting += 1
+            meet_nearest(faces, d, block, n, face, distance, cos_i, cos_met, cos_t)
+            escaped = n
+            for choice in range(faces.first[d], faces.first[d + 1]):
+                f = faces.next_face[choice]
+                count = choose(face, f, n, chosen)
+                escaped -= count
+                if m == max_intersections:
+                    outcomes[Outcome.SPENT] += count
+                    continue
+                met, beyond = waiting.blocks[top + 1], waiting.blocks[top + 2]
+                advance_chosen(block, n, chosen, count, distance, cos_i, faces.n_i[f], met, cos_met)
+                total = split(faces, f, met, count, cos_met, cos_t, beyond)
+                through, returned = count, count
+                if total > 0 or min_amplitude > 0:
+                    for i in range(count):
+                        wanted[i] = cos_t[i] >= 0 and abs(beyond[AMPLITUDE + i]) >= min_amplitude
+                    through = keep(beyond, count, wanted)
+                if min_amplitude > 0:
+                    for i in range(count):
+                        wanted[i] = abs(met[AMPLITUDE + i]) >= min_amplitude
+                    returned = keep(met, count, wanted)
+                outcomes[Outcome.TOTALLY_REFLECTED] += total
+                outcomes[Outcome.FAINT] += 2 * count - total - through - returned
+                here = code * faces.kind.size + 2 * faces.surface[f]
+                top = _wait(waiting, top, returned, faces.after_reflection[f], m + 1, here)
+                top = _wait(waiting, top, through, faces.after_transmission[f], m + 1, here + 1)
+            outcomes[Outcome.ESCAPED] += escaped
     return (
-        ray[:detected].copy(),
-        path[:detected].copy(),
-        amplitude[:detected].copy(),
-        optical_path_length[:detected].copy(),
+        found.ray[:detected].copy(),
+        found.path[:detected].copy(),
+        found.amplitude[:detected].copy(),
+        found.optical_path_length[:detected].copy(),
         segments,
         outcomes,
     )
@@ -286,7 +254,7 @@ def trace(
             f"{detector.focus_distance} µm"
         )
     return Detections(
-        *_trace(scene.arrays(), beam, detector, focus, max_intersections, min_amplitude)
+        *_trace(faces_of(scene), beam, detector, focus, max_intersections, min_amplitude)
     )
 
 

@@ -97,5 +97,5 @@ def test_a_formula_changed_in_another_file_is_compiled_anew(copy: Path) -> None:
         "print(tracer(config)(1.4, 0.5).amplitude[0])"
     )
     before = float(run_in(copy, code))
-    edit(copy / "octsim" / "detection.py", "return 1 - ratio * ratio", "return 0.5 - ratio * ratio")
+    edit(copy / "octsim" / "detection.py", "return 1 - squared", "return 0.5 - squared")
     assert float(run_in(copy, code)) == pytest.approx(before / 2)

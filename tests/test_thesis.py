@@ -84,7 +84,6 @@ OVERLAYS = {
 }  # fmt: skip
 
 
-@pytest.mark.filterwarnings("ignore::octsim.errors.OctsimWarning")
 @pytest.mark.parametrize("overlay", OVERLAYS.values(), ids=OVERLAYS)
 def test_spectra_agree_with_a_literal_reading_in_absolute_scale(
     overlay: dict[str, object],

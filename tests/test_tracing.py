@@ -182,7 +182,13 @@ def test_optical_path_follows_from_the_geometry_of_the_near_reflection() -> None
     # A ray in the plane x = 0 sees flat plates: its path is trigonometry.
     config = load_config({"detector": {"core_diameter": "400 um"}, "scene": {"gap": "1 um"}})
     tilt, focus = 0.01, 0.5
-    beam = Beam(np.zeros(1), np.array([math.sin(tilt)]), np.array([math.cos(tilt)]), np.ones(1))
+    beam = Beam(
+        np.zeros(1),
+        np.array([math.sin(tilt)]),
+        np.array([math.cos(tilt)]),
+        np.ones(1),
+        np.arange(1),
+    )
     found = trace(neuron_on_glass(config.scene, 1.4), beam, detector_of(config), focus)
     path = by_ray_and_path(found)[0, "PT CR PT"][1]
     in_water = math.asin(1.52 * math.sin(tilt) / 1.33)
