@@ -2,6 +2,8 @@
 # make test                                   the test suite
 # make lint                                   formatting, style and types
 # make docs                                   the parts of docs/ that are made
+# make bench                                  speed, as ratios within one run
+# make kills                                  30 kills at random moments, 30 same results
 # make lock                                   resolve the dependencies anew
 PYTHON ?= python3
 CORES ?= 2
@@ -20,7 +22,7 @@ except octsim.ConfigError as error:
 endef
 export CHECK
 
-.PHONY: results test lint format docs lock clean
+.PHONY: results test lint format docs bench kills lock clean
 results: .venv/run
 	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
 	@$(BIN)/snakemake --cores $(CORES) --configfile "$(CONFIG)"
@@ -62,6 +64,12 @@ lock: .venv/bin/python
 	$(PIP) install uv
 	$(COMPILE) --group build -o requirements.lock
 	$(COMPILE) --group dev -c requirements.lock -o requirements-dev.lock
+
+bench: .venv/run
+	$(BIN)/python benchmarks/bench.py
+
+kills: .venv/dev
+	OCTSIM_KILLS=30 $(BIN)/pytest -n 2 tests/test_kill.py -k killed
 
 clean:
 	rm -rf .venv results .snakemake

@@ -110,7 +110,7 @@ def meet_nearest(
 
 
 @register_jitable(forceinline=True)
-def choose(face: NDArray[np.int64], f: int, n: int, chosen: NDArray[np.int64]) -> int:
+def choose(face: NDArray[np.int64], f: int, n: int, chosen: NDArray[np.uint32]) -> int:
     """List those of n lanes that meet face f; give their number."""
     count = 0
     for i in range(n):
@@ -147,7 +147,7 @@ def advance(block: Block, i: int, distance: float, n_i: float, to: Block, k: int
 def advance_chosen(
     block: Block,
     n: int,
-    chosen: NDArray[np.int64],
+    chosen: NDArray[np.uint32],
     count: int,
     distance: Lanes,
     cos_i: Lanes,

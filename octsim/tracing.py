@@ -21,6 +21,7 @@ from octsim.lanes import (
     PATH,
     RAY,
     Block,
+    Lanes,
     advance_chosen,
     choose,
     direction,
@@ -118,9 +119,14 @@ def _detect(
     found: _Found,
     detected: int,
     outcomes: NDArray[np.int64],
+    to_focus: Lanes,
+    at_focus: Lanes,
+    at_objective: Lanes,
 ) -> tuple[_Found, int]:
-    """Note which of n lanes on their way to the objective are detected."""
-    to_focus, at_focus, at_objective = np.empty(LANES), np.empty(LANES), np.empty(LANES)
+    """Note which of n lanes on their way to the objective are detected.
+
+    The last three are room to work in.
+    """
     for i in range(n):
         here, along = position(block, i), direction(block, i)
         to_focus[i], at_focus[i] = arrival(focus, here, along)
@@ -157,7 +163,7 @@ def _trace(
     waiting = _room_for_waiting((2 * faces.kind.size + 1) * (max_intersections + 1))
     distance, cos_i, cos_t = np.empty(LANES), np.empty(LANES), np.empty(LANES)
     cos_met, wanted = np.empty(LANES), np.empty(LANES, np.bool_)
-    face, chosen = np.empty(LANES, np.int64), np.empty(LANES, np.int64)
+    face, chosen = np.empty(LANES, np.int64), np.empty(LANES, np.uint32)
 
     for first in range(0, beam.vx.size, LANES):
         count = min(LANES, beam.vx.size - first)
@@ -173,8 +179,9 @@ def _trace(
             segments += n
             if faces.to_objective[d]:
                 found, detected = _detect(
-                    detector, focus, faces.n_i[0], beam, block, n, code, found, detected, outcomes
-                )
+                    detector, focus, faces.n_i[0], beam, block, n, code, found, detected, outcomes,
+                    distance, cos_i, cos_t,
+                )  # fmt: skip
                 continue
             meet_nearest(faces, d, block, n, face, distance, cos_i, cos_met, cos_t)
             escaped = n

@@ -1,0 +1,239 @@
+"""Measure octsim's speed, as ratios within one run, and write them to a dataset and the docs.
+
+Run by `make bench`. What is compared takes turns; medians are given, as these machines are noisy.
+"""
+
+import math
+import os
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from same import numpy_tree, same_tree
+from trees import NoCompilerError, scalar_tree, simd_tree
+
+import octsim
+from octsim.beam import vogel_beam
+from octsim.datasets import write
+from octsim.detection import detector_of
+from octsim.scene import neuron_on_glass
+from octsim.spectrum import intensity, wavenumbers
+from octsim.threads import each
+from octsim.tracing import trace
+
+ROOT = Path(__file__).parent.parent
+ROUNDS = 41
+CORES = os.cpu_count() or 1
+Work = Callable[[], object]
+
+
+def take_turns(works: dict[str, Work], rounds: int) -> dict[str, list[float]]:
+    """Time some works in turn, round after round; seconds of each."""
+    seconds: dict[str, list[float]] = {name: [] for name in works}
+    for work in works.values():
+        work()
+    for _ in range(rounds):
+        for name, work in works.items():
+            began = time.perf_counter()
+            work()
+            seconds[name].append(time.perf_counter() - began)
+    return seconds
+
+
+def ratio(seconds: dict[str, list[float]], of: str, to: str) -> float:
+    """Median over the rounds of how many times longer one took than another."""
+    return statistics.median(a / b for a, b in zip(seconds[of], seconds[to], strict=True))
+
+
+def trees() -> list[tuple[str, float, float]]:
+    """Measure the ray tree: name, segments a second, speed of octsim's on one core over it."""
+    config = octsim.load_config()
+    beam = vogel_beam(config.objective, config.tracing, config.scene.refractive_index.glass)
+    scene, detector, focus = neuron_on_glass(config.scene, 1.4), detector_of(config), 0.876
+    arguments = (scene, beam, detector, focus)
+    octsim_tree = partial(trace, *arguments)
+    octsim_name = "octsim, one core"
+    works: dict[str, Work] = {
+        octsim_name: octsim_tree,
+        f"octsim, {CORES} cores": lambda: each(lambda _: octsim_tree(), range(CORES), CORES),
+        "numpy, breadth first": partial(numpy_tree, *arguments),
+    }
+    by_c: dict[str, Work] = {
+        "C, same arithmetic, scalar": partial(same_tree, "same_scalar", *arguments),
+        "C, same arithmetic, SIMD": partial(same_tree, "same_lanes", *arguments),
+        "C, this scene's invariants, scalar": partial(scalar_tree, *arguments),
+        "C, this scene's invariants, SIMD": partial(simd_tree, *arguments),
+    }
+    try:
+        by_c["C, same arithmetic, scalar"]()
+        works |= by_c
+    except NoCompilerError as error:
+        print(f"the C trees are left out: {error}", file=sys.stderr)
+    expected = octsim_tree()
+    for name, work in works.items():
+        found = work()
+        if name not in list(works)[:2]:
+            assert found.segments == expected.segments, name
+            assert math.isclose(found.amplitude.sum(), expected.amplitude.sum(), rel_tol=1e-9), name
+    seconds = take_turns(works, ROUNDS)
+    traced = {name: expected.segments * (CORES if name == list(works)[1] else 1) for name in works}
+    return [
+        (
+            name,
+            traced[name] / statistics.median(seconds[name]),
+            ratio(seconds, name, octsim_name) * traced[octsim_name] / traced[name],
+        )
+        for name in works
+    ]
+
+
+def spectrum_sum() -> tuple[float, float]:
+    """Measure the sum over wavenumbers: speed over naive numpy, error over the peak."""
+    config = octsim.load_config()
+    beam = vogel_beam(config.objective, config.tracing, 1.52)
+    found = trace(neuron_on_glass(config.scene, 1.4), beam, detector_of(config), 0.876)
+    k, path = wavenumbers(config.spectrum), found.optical_path_length
+
+    def naive() -> object:
+        return np.abs((found.amplitude * np.exp(1j * np.outer(k, path))).sum(axis=1)) ** 2
+
+    fast = partial(intensity, found.amplitude, path, k)
+    seconds = take_turns({"octsim": fast, "naive": naive}, ROUNDS)
+    rays = list(zip(found.amplitude.tolist(), path.tolist(), strict=True))
+    exact = [
+        math.fsum(a * math.cos(x * p) for a, p in rays) ** 2
+        + math.fsum(a * math.sin(x * p) for a, p in rays) ** 2
+        for x in k.tolist()
+    ]
+    spectrum = fast()
+    return ratio(seconds, "naive", "octsim"), float(np.abs(spectrum - exact).max() / max(exact))
+
+
+def seconds_of(command: list[str], folder: Path) -> float:
+    """Time a command in a folder."""
+    began = time.perf_counter()
+    subprocess.run(command, cwd=folder, check=True, capture_output=True)
+    return time.perf_counter() - began
+
+
+def pipeline(rounds: int = 3) -> dict[str, float]:
+    """Measure the whole pipeline: medians of a few runs of the default config, in seconds."""
+    python = sys.executable
+    snakemake = [python, "-m", "snakemake", "--cores", "2"]
+    modules = "octsim.focus, octsim.sweep, octsim.phase, octsim.figures, octsim.loading"
+    taken: dict[str, list[float]] = {}
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+        shutil.copy(ROOT / "Snakefile", folder)
+        for part in ("workflow", "profiles"):
+            shutil.copytree(ROOT / part, folder / part)
+        for _ in range(rounds):
+            shutil.rmtree(folder / "results", ignore_errors=True)
+            steps = {
+                "from nothing": snakemake,
+                "nothing to do": snakemake,
+                "figures alone": [*snakemake, "--forcerun", "figures"],
+                "imports of one job": [python, "-c", f"import {modules}"],
+            }
+            for name, command in steps.items():
+                taken.setdefault(name, []).append(seconds_of(command, folder))
+            jobs = (folder / "results" / "thesis" / "benchmarks").glob("*.tsv")
+            whole = sum(float(job.read_text().splitlines()[1].split("\t")[0]) for job in jobs)
+            taken.setdefault("all jobs together", []).append(whole)
+    return {name: statistics.median(seconds) for name, seconds in taken.items()}
+
+
+def report(dataset: xr.Dataset) -> str:
+    """Write the page of what was measured."""
+    rows = "\n".join(
+        f"| {name} | {float(rate) / 1e6:.0f} | {float(speed):.2f} |"
+        for name, rate, speed in zip(
+            dataset["tree"].values, dataset["segment_rate"], dataset["octsim_speed"], strict=True
+        )
+    )
+    steps = "\n".join(
+        f"| {name} | {float(seconds):.1f} |"
+        for name, seconds in zip(dataset["step"].values, dataset["step_time"], strict=True)
+    )
+    return TEMPLATE.format(
+        rows=rows,
+        steps=steps,
+        cores=CORES,
+        sum_speed=float(dataset["sum_speed"]),
+        sum_error=float(dataset["sum_error"]),
+    )
+
+
+TEMPLATE = """# Speed
+
+Written by `make bench`; do not edit. Medians of one run on a machine with {cores} cores; the ratios
+say more than the rates, as what is compared took turns.
+
+## The ray tree
+
+The full tree of 3000 rays, d = 1.4 µm. All find the same rays and count the same segments.
+
+| tree | million segments a second | octsim on one core is so many times as fast |
+| --- | --- | --- |
+{rows}
+
+The C trees of the *same arithmetic* say what the language and the compiler cost. Those of *this
+scene's invariants* say what is left on the table: they trace in the plane across the cylinder, use
+that every chord of one cylinder is alike, and count segments that they need not make; they know one
+scene only.
+
+## The sum over 1000 wavenumbers
+
+{sum_speed:.0f} times as fast as `(E * exp(1j * outer(k, path))).sum(axis=1)` in numpy, with an error of
+{sum_error:.1e} of the peak against an exactly rounded sum.
+
+## The pipeline, default config, two cores
+
+| | seconds |
+| --- | --- |
+{steps}
+
+*Imports of one job* is a process that imports what all jobs need together and does nothing else: a
+run starts seven, so most of the time of all jobs is starting up.
+"""
+
+
+def main() -> None:
+    """Measure everything, and write `results/bench/bench.nc` and `docs/speed.md`."""
+    measured = trees()
+    sum_speed, sum_error = spectrum_sum()
+    steps = pipeline()
+
+    def of(value: object, units: str, long_name: str, *dimensions: str) -> tuple[object, ...]:
+        return dimensions, value, {"units": units, "long_name": long_name}
+
+    dataset = xr.Dataset(
+        {
+            "segment_rate": of([m[1] for m in measured], "s-1", "segments traced a second", "tree"),
+            "octsim_speed": of([m[2] for m in measured], "1", "speed of octsim over this", "tree"),
+            "sum_speed": of(sum_speed, "1", "speed of the sum over naive numpy"),
+            "sum_error": of(sum_error, "1", "error of the sum over its peak"),
+            "step_time": of(list(steps.values()), "s", "time of a step", "step"),
+        },
+        {
+            "tree": of([m[0] for m in measured], "1", "ray tree", "tree"),
+            "step": of(list(steps), "1", "step of the pipeline", "step"),
+        },
+        {"title": "Speed of octsim", "octsim_version": octsim.__version__, "stage": "bench"},
+    )
+    write(dataset, ROOT / "results" / "bench" / "bench.nc")
+    page = report(dataset)
+    (ROOT / "docs" / "speed.md").write_text(page, encoding="utf-8")
+    print(page)
+
+
+if __name__ == "__main__":
+    main()
