@@ -128,7 +128,7 @@ def pipeline(rounds: int = 3) -> dict[str, float]:
     """Measure the whole pipeline: medians of a few runs of the default config, in seconds."""
     python = sys.executable
     snakemake = [python, "-m", "snakemake", "--cores", "2"]
-    modules = "octsim.focus, octsim.sweep, octsim.phase, octsim.figures, octsim.loading"
+    modules = "octsim.focus, octsim.law, octsim.sweep, octsim.phase, octsim.figures, octsim.loading"
     taken: dict[str, list[float]] = {}
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
@@ -185,15 +185,15 @@ The full tree of 3000 rays, d = 1.4 µm. All find the same rays and count the sa
 | --- | --- | --- |
 {rows}
 
-The C trees of the *same arithmetic* say what the language and the compiler cost. Those of *this
+The numpy tree and the C trees of the *same arithmetic* say what the language and the compiler cost. Those of *this
 scene's invariants* say what is left on the table: they trace in the plane across the cylinder, use
 that every chord of one cylinder is alike, and count segments that they need not make; they know one
 scene only.
 
 ## The sum over 1000 wavenumbers
 
-{sum_speed:.0f} times as fast as `(E * exp(1j * outer(k, path))).sum(axis=1)` in numpy, with an error of
-{sum_error:.1e} of the peak against an exactly rounded sum.
+{sum_speed:.0f} times as fast as `(E * exp(1j * outer(k, path))).sum(axis=1)` in numpy; its error
+against an exactly rounded sum is {sum_error:.1e} of the peak.
 
 ## The pipeline, default config, two cores
 

@@ -20,7 +20,7 @@ from octsim.optics import Vector, cos_transmitted_squared, fresnel, reflect, ref
 Block = NDArray[np.float64]
 Lanes = NDArray[np.float64]
 
-LANES = 64
+LANES = 128
 X, Y, Z = 0 * LANES, 1 * LANES, 2 * LANES
 VX, VY, VZ = 3 * LANES, 4 * LANES, 5 * LANES
 AMPLITUDE = 6 * LANES

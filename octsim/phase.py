@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy.signal import get_window
 
 from octsim.config import Config, Processing
 from octsim.datasets import make
@@ -25,6 +24,9 @@ def centred(intensity: NDArray[np.float64], centre: str) -> NDArray[np.float64]:
 
 def windowed(intensity: NDArray[np.float64], window: str) -> NDArray[np.float64]:
     """Multiply spectra (..., K) by a symmetric window of scipy.signal.windows."""
+    # half a second to import, which only those who need it should wait for
+    from scipy.signal import get_window
+
     product: NDArray[np.float64] = intensity * get_window(
         window, intensity.shape[-1], fftbins=False
     )

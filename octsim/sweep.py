@@ -8,7 +8,6 @@ from octsim.config import Config, FocusLine
 from octsim.datasets import make
 from octsim.detection import Outcome
 from octsim.errors import OctsimError
-from octsim.focus import FitStatus
 from octsim.simulation import tracer
 from octsim.spectrum import intensity, wavenumbers
 from octsim.threads import each
@@ -42,10 +41,12 @@ def sweep_foci(config: Config, law: xr.Dataset | None) -> NDArray[np.float64]:
     if law is None:
         raise OctsimError(f"sweep.focus: 'law' given, so fit and pass the focus law, {remedy}")
     if not np.isfinite(law["slope"]):
+        named = law["status"].attrs["flag_meanings"].split()
+        statuses = [named[status] for status in law["status"].values]
         failed = ", ".join(
-            f"{diameter:.4g} um ({FitStatus(status).name.lower()})"
-            for diameter, status in zip(law["diameter"].values, law["status"].values, strict=True)
-            if status != FitStatus.FITTED
+            f"{diameter:.4g} um ({status})"
+            for diameter, status in zip(law["diameter"].values, statuses, strict=True)
+            if status != "fitted"
         )
         raise OctsimError(
             f"sweep.focus: 'law' given, but there is no law: no Gaussian fits at {failed}; change "

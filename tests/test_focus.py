@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from octsim.focus import FitStatus, fit_gaussian, fit_line, focus_law, gaussian, gaussian_fits
+from octsim.law import FitStatus, fit_gaussian, fit_line, focus_law, gaussian, gaussian_fits
 from octsim.loading import load_config
 
 FOCI = np.linspace(0.4, 0.9, 41)

@@ -3,7 +3,7 @@
 from job import job
 
 from octsim.datasets import read, write
-from octsim.focus import focus_law, gaussian_fits
+from octsim.law import focus_law, gaussian_fits
 
 with job(snakemake) as config:
     fits = gaussian_fits(config, read(snakemake.input.focus_sweep, "focus_sweep"))
