@@ -185,10 +185,10 @@ The full tree of 3000 rays, d = 1.4 µm. All find the same rays and count the sa
 | --- | --- | --- |
 {rows}
 
-The numpy tree and the C trees of the *same arithmetic* say what the language and the compiler cost. Those of *this
-scene's invariants* say what is left on the table: they trace in the plane across the cylinder, use
-that every chord of one cylinder is alike, and count segments that they need not make; they know one
-scene only.
+The numpy tree and the C trees of the *same arithmetic* say what the language and the compiler cost.
+Those of *this scene's invariants* say what is left on the table: they trace in the plane across the
+cylinder, use that every chord of one cylinder is alike, and count segments that they need not make;
+they know one scene only.
 
 ## The sum over 1000 wavenumbers
 
