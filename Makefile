@@ -3,12 +3,14 @@
 # make lint                                   formatting, style and types
 # make docs                                   the parts of docs/ that are made
 # make bench                                  speed, as ratios within one run
+# make bench-peers                            the same beside other ray tracers, optional
 # make kills                                  30 kills at random moments, 30 same results
 # make lock                                   resolve the dependencies anew
 PYTHON ?= python3
 CORES ?= 2
 CONFIG ?= config/default.yaml
 BIN = .venv/bin
+PEERS_PIP = .venv-peers/bin/python -m pip --disable-pip-version-check --quiet
 PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 # snakemake itself says little of a config that is missing or not YAML
@@ -22,7 +24,7 @@ except octsim.ConfigError as error:
 endef
 export CHECK
 
-.PHONY: results test lint format docs bench kills lock clean
+.PHONY: results test lint format docs bench bench-peers kills lock clean
 results: .venv/run
 	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
 	@$(BIN)/snakemake --cores $(CORES) --configfile "$(CONFIG)"
@@ -59,17 +61,27 @@ docs: results
 	touch $@
 
 COMPILE = $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
-	--no-emit-index-url --no-emit-find-links --no-header --no-annotate pyproject.toml
+	--no-emit-index-url --no-emit-find-links --no-header --no-annotate
 lock: .venv/bin/python
 	$(PIP) install uv
-	$(COMPILE) --group build -o requirements.lock
-	$(COMPILE) --group dev -c requirements.lock -o requirements-dev.lock
+	$(COMPILE) pyproject.toml --group build -o requirements.lock
+	$(COMPILE) pyproject.toml --group dev -c requirements.lock -o requirements-dev.lock
+	$(COMPILE) benchmarks/peers.in -o benchmarks/peers.lock
 
 bench: .venv/run
 	$(BIN)/python benchmarks/bench.py
+
+bench-peers: .venv-peers/run
+	.venv-peers/bin/python benchmarks/peers.py
+
+.venv-peers/run: requirements.lock benchmarks/peers.lock pyproject.toml
+	$(PYTHON) -m venv .venv-peers
+	$(PEERS_PIP) install --require-hashes -r requirements.lock -r benchmarks/peers.lock
+	$(PEERS_PIP) install --no-deps --no-build-isolation -e .
+	touch $@
 
 kills: .venv/dev
 	OCTSIM_KILLS=30 $(BIN)/pytest -n 2 tests/test_kill.py -k killed
 
 clean:
-	rm -rf .venv results .snakemake
+	rm -rf .venv .venv-peers results .snakemake

@@ -68,7 +68,9 @@ onstart:
 
 
 onsuccess:
-    print(Path(f"results/{run.run}/logs/phase_slope.log").read_text(), end="", file=sys.stderr)
+    found = Path(f"results/{run.run}/logs/phase_slope.log")
+    if found.is_file():  # a run may have been asked for less
+        print(found.read_text(), end="", file=sys.stderr)
     print(f"octsim: datasets and figures are in results/{run.run}/", file=sys.stderr)
 
 
