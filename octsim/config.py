@@ -169,6 +169,11 @@ class FocusLine(Section):
     slope: Annotated[Number, Field(ge=-1e6, le=1e6)]
     intercept: Position
 
+    @classmethod
+    def fitted(cls, law: Any) -> "FocusLine":
+        """Give the line of a fitted law: a `focus_law` dataset."""
+        return cls.model_construct(slope=float(law["slope"]), intercept=float(law["intercept"]))
+
     def at(self, diameter: NDArray[np.float64]) -> NDArray[np.float64]:
         """Give the focus for each diameter, both in µm."""
         return self.slope * diameter + self.intercept

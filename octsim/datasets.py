@@ -59,6 +59,8 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "wavenumber": ("um-1", "wavenumber in vacuum, 2 pi / wavelength"),
     "width": ("um", "standard deviation of the Gaussian"),
 }
+INSTRUMENT = ("scene", "objective", "detector", "tracing")
+"""Parts of a config that every stage that traces reads."""
 _STANDARD_ERROR = "_standard_error"
 _COMPRESSION = {"zlib": True, "complevel": 4, "shuffle": True}
 
@@ -107,7 +109,7 @@ def make(
         "source_digest": source_digest(module),
         "creation_command": (
             "save the attribute 'config' of this file as config.json, then: "
-            f".venv/bin/snakemake --cores 2 --configfile config.json {file}"
+            f".venv/bin/snakemake {file} --cores 2 --configfile config.json"
         ),
     }
     return dataset
@@ -130,13 +132,22 @@ def write(dataset: xr.Dataset, path: str | Path) -> None:
         dataset.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
 
 
-def read(path: str | Path, stage: str) -> xr.Dataset:
+def read(path: str | Path, stage: str, config: Config | None = None) -> xr.Dataset:
     """Read a dataset of a stage into memory.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    stage : str
+        Stage that it has to be of.
+    config : Config, optional
+        Config that it has to follow from, as far as its stage depends on one.
 
     Raises
     ------
     DatasetError
-        If the file is missing, damaged, or not a dataset of that stage.
+        If the file is missing, damaged, not a dataset of that stage, or made from another config.
     """
     path = Path(path)
     remedy = f"move it away and run again to make {path.name} anew"
@@ -148,7 +159,29 @@ def read(path: str | Path, stage: str) -> xr.Dataset:
         raise DatasetError(f"{path}: can't be read ({reason(error)}); {remedy}") from None
     if dataset.attrs.get("stage") != stage:
         raise DatasetError(f"{path}: not octsim's dataset of the stage {stage}; {remedy}")
+    if config is not None:
+        made_from, asked = json.loads(dataset.attrs["config"]), config.to_dict()
+        parts = dict.fromkeys(_depends_on(stage, config))
+        differ = [part for part in parts if made_from.get(part) != asked[part]]
+        if differ:
+            raise DatasetError(
+                f"{path}: made from another config (its {', '.join(differ)} differ); {remedy}"
+            )
     return dataset
+
+
+def _depends_on(stage: str, config: Config) -> tuple[str, ...]:
+    """Give the parts of a config that a stage and those before it read."""
+    law = (*INSTRUMENT, "spectrum", "focus_law")
+    swept = (*(law if config.sweep.focus == "law" else INSTRUMENT), "sweep")
+    parts = {
+        "focus_scan": (*INSTRUMENT, "spectrum", "focus_scan"),
+        "detections": swept,
+        "spectra": (*swept, "spectrum"),
+        "fourier": (*swept, "spectrum", "processing"),
+        "phase_slope": (*swept, "spectrum", "processing"),
+    }
+    return parts.get(stage, law)
 
 
 def flags(

@@ -47,6 +47,8 @@ class Faces(NamedTuple):
     """Faces that can come next, one departure's after the other's."""
     first: NDArray[np.int64]
     """Where each departure's faces begin in `next_face`, (D + 1,)."""
+    n_objective: float
+    """Refractive index of the medium that the objective lies in."""
     to_objective: NDArray[np.bool_]
     """Whether light of a departure is back in the medium of the objective, (D,)."""
 
@@ -76,6 +78,7 @@ def faces_of(scene: Scene) -> Faces:
         after_transmission=np.array([departures.index(side) for side in others]),
         next_face=np.array([f for faces in following for f in faces]),
         first=np.cumsum([0, *map(len, following)]),
+        n_objective=index[Medium.GLASS],
         to_objective=np.array([m == Medium.GLASS and s >= 0 for s, m in departures]),
     )
 

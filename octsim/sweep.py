@@ -52,9 +52,7 @@ def sweep_foci(config: Config, law: xr.Dataset | None) -> NDArray[np.float64]:
             f"sweep.focus: 'law' given, but there is no law: no Gaussian fits at {failed}; change "
             f"focus_law.diameters, or give focus_law.fraction a wider range or more steps, {remedy}"
         )
-    foci = FocusLine.model_construct(
-        slope=float(law["slope"]), intercept=float(law["intercept"])
-    ).at(diameters)
+    foci = FocusLine.fitted(law).at(diameters)
     if not foci.max() < config.objective.focus_distance:
         raise OctsimError(
             f"objective.focus_distance: {config.objective.focus_distance} um given, but the fitted "

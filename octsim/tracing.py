@@ -179,9 +179,20 @@ def _trace(
             segments += n
             if faces.to_objective[d]:
                 found, detected = _detect(
-                    detector, focus, faces.n_i[0], beam, block, n, code, found, detected, outcomes,
-                    distance, cos_i, cos_t,
-                )  # fmt: skip
+                    detector,
+                    focus,
+                    faces.n_objective,
+                    beam,
+                    block,
+                    n,
+                    code,
+                    found,
+                    detected,
+                    outcomes,
+                    distance,
+                    cos_i,
+                    cos_t,
+                )
                 continue
             meet_nearest(faces, d, block, n, face, distance, cos_i, cos_met, cos_t)
             escaped = n
@@ -253,12 +264,18 @@ def trace(
     Raises
     ------
     ValueError
-        If the focus is not below the focus distance: the objective would not be in the glass.
+        If the focus is not below the focus distance, as the objective would not be in the glass, or
+        there are more `max_intersections` than light paths can be numbered for.
     """
     if not focus < detector.focus_distance:
         raise ValueError(
             f"focus: {focus} µm given; it must be below the focus distance, "
             f"{detector.focus_distance} µm"
+        )
+    if (2 * len(scene.surfaces)) ** max_intersections >= 2**62:
+        raise ValueError(
+            f"max_intersections: {max_intersections} given; the light paths of so many meetings "
+            f"with {len(scene.surfaces)} surfaces can't be numbered, so give less"
         )
     return Detections(
         *_trace(faces_of(scene), beam, detector, focus, max_intersections, min_amplitude)

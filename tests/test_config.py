@@ -227,6 +227,15 @@ def test_the_default_config_file_is_the_defaults_and_names_every_key() -> None:
     assert keys(written) == set(known_keys()) - optional
 
 
+@pytest.mark.parametrize(
+    "file", sorted((ROOT / "config" / "examples").glob("*.yaml")), ids=lambda f: f.stem
+)
+def test_the_examples_are_valid_and_raise_no_remark(file: Path) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert load_config(file).run == file.stem
+
+
 def test_the_schema_file_is_the_models_schema() -> None:
     schema = json.loads((ROOT / "config" / "schema.json").read_text(encoding="utf-8"))
     assert schema == Config.model_json_schema(), "run `make docs`"

@@ -150,6 +150,18 @@ def test_missing_damaged_and_foreign_files_are_refused_in_one_line(
         datasets.read(file, "spectra")
 
 
+def test_a_dataset_of_another_config_is_refused(
+    stages: dict[str, xr.Dataset], tmp_path: Path
+) -> None:
+    file = tmp_path / "spectra.nc"
+    datasets.write(stages["spectra"], file)
+    same = octsim.load_config(TINY, {"run": "other", "processing": {"window": "hann"}})
+    xr.testing.assert_identical(datasets.read(file, "spectra", same), stages["spectra"])
+    other = octsim.load_config(TINY, {"scene": {"gap": "6 nm"}, "spectrum": {"samples": 500}})
+    with pytest.raises(octsim.DatasetError, match=r"another config \(its scene, spectrum differ"):
+        datasets.read(file, "spectra", other)
+
+
 def test_threads_change_no_bit(stages: dict[str, xr.Dataset]) -> None:
     config = octsim.load_config(TINY)
     for threads in (2, 5):

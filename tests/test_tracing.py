@@ -1,6 +1,7 @@
 """The ray tree against a slow literal one, closed forms, symmetry and what is conserved."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -218,6 +219,23 @@ def test_a_neuron_of_water_is_not_there() -> None:
     found = tracer(config)(1.4, 0.01)
     seen = {path_name(code) for code in found.path[np.abs(found.amplitude) > 1e-20].tolist()}
     assert seen == {"PR"}
+
+
+def test_the_order_of_the_surfaces_does_not_matter() -> None:
+    config = load_config({"tracing": {"rays": 300}})
+    beam, detector = vogel_beam(config.objective, config.tracing, 1.52), detector_of(config)
+    scene = neuron_on_glass(config.scene, 1.4)
+    swapped = replace(scene, surfaces=scene.surfaces[::-1])
+    one, other = trace(scene, beam, detector, 0.88), trace(swapped, beam, detector, 0.88)
+    for name in ("ray", "amplitude", "optical_path_length", "segments", "outcomes"):
+        assert np.array_equal(getattr(one, name), getattr(other, name)), name
+
+
+def test_more_meetings_than_paths_can_be_numbered_for_are_refused() -> None:
+    config = load_config({"tracing": {"rays": 3}})
+    beam, detector = vogel_beam(config.objective, config.tracing, 1.52), detector_of(config)
+    with pytest.raises(ValueError, match="max_intersections: 31 given"):
+        trace(neuron_on_glass(config.scene, 1.4), beam, detector, 0.88, max_intersections=31)
 
 
 def test_a_focus_beyond_the_objective_is_refused() -> None:

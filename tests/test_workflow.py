@@ -247,6 +247,26 @@ def test_a_diameter_step_that_aliases_is_warned_of_once(tmp_path: Path) -> None:
     assert done.stderr.count("octsim: warning: sweep.diameters: a step of 0.25 um") == 1
 
 
+def test_a_dataset_is_made_again_by_the_command_that_it_records(
+    law: Checkout, tmp_path: Path
+) -> None:
+    checkout = Checkout(tmp_path)
+    with xr.open_dataset(law.folder / "results" / "tiny" / "focus_law.nc") as dataset:
+        (tmp_path / "config.json").write_text(dataset.attrs["config"])
+        command = dataset.attrs["creation_command"].split("then: ")[1]
+    arguments = command.removeprefix(".venv/bin/snakemake").split()
+    done = subprocess.run(
+        [sys.executable, "-m", "snakemake", *arguments],
+        cwd=tmp_path,
+        capture_output=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    again = checkout.results()
+    assert again == {name: law.results()[name] for name in again}
+    assert set(again) == {"tiny/focus_sweep.nc", "tiny/gaussian_fits.nc", "tiny/focus_law.nc"}
+
+
 def test_every_run_has_its_own_folder_and_the_same_bits(law: Checkout, tmp_path: Path) -> None:
     checkout = Checkout(tmp_path)
     checkout.run(TINY, "--cores", "1")

@@ -1,7 +1,5 @@
 """Figures 10 to 12: magnitude, phase and phase slope of the components over the diameter."""
 
-from collections.abc import Iterator
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -17,7 +15,7 @@ def _draw_components(
     axes: Axes, diameter: NDArray[np.float64], strongest: NDArray[np.int64], values: xr.DataArray
 ) -> None:
     """Draw each component in use: solid where it is the strongest, dotted elsewhere."""
-    for number in _in_use(strongest):
+    for number in np.unique(strongest).tolist():
         colour, curve = component_colour(number), values.isel(component=number).values
         axes.plot(diameter, curve, color=colour, linestyle=":", linewidth=1.0)
         axes.plot(
@@ -25,10 +23,6 @@ def _draw_components(
             color=colour, marker=_MARKERS[(number - 1) % len(_MARKERS)], markersize=3,
             label=f"component {number}",
         )  # fmt: skip
-
-
-def _in_use(strongest: NDArray[np.int64]) -> Iterator[int]:
-    yield from (int(number) for number in np.unique(strongest))
 
 
 def figure_10(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:

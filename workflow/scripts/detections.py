@@ -6,8 +6,8 @@ from octsim.datasets import read, write
 from octsim.sweep import detections
 
 with job(snakemake) as config:
-    law_file = snakemake.input.get("focus_law")
-    law = read(law_file, "focus_law") if law_file else None
+    law_file = snakemake.input.get("focus_law", config)
+    law = read(law_file, "focus_law", config) if law_file else None
     detected = detections(config, law, snakemake.threads)
     write(detected, snakemake.output[0])
     count_points(snakemake, detected)

@@ -1,11 +1,11 @@
 """What every job does around its stage: read the config, log, and say in one line what failed."""
 
-import ctypes
 import json
 import logging
 import os
-import signal
 import sys
+import threading
+import time
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -20,12 +20,23 @@ from octsim.loading import load_config
 
 
 def end_with_the_run() -> None:
-    """Have this job killed when the run is: none goes on to write beside the next run's."""
-    if sys.platform == "linux":
-        set_parent_death_signal = 1
-        ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGKILL)
-    if os.environ.get("OCTSIM_RUN") != str(os.getppid()):
-        sys.exit("octsim: the run that started this job is gone")
+    """End this process as soon as its run has ended: none goes on to write beside the next run."""
+    run, parent = int(os.environ["OCTSIM_RUN"]), os.getppid()
+
+    def watch() -> None:
+        while os.getppid() == parent and _is_alive(run):
+            time.sleep(0.1)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
+def _is_alive(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    return True
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from octsim.datasets import read, write
 from octsim.phase import fourier, phase_slope, summary
 
 with job(snakemake) as config:
-    transformed = fourier(config, read(snakemake.input.spectra, "spectra"))
+    transformed = fourier(config, read(snakemake.input.spectra, "spectra", config))
     write(transformed, snakemake.output.fourier)
     slopes = phase_slope(config, transformed)
     write(slopes, snakemake.output.phase_slope)

@@ -6,5 +6,5 @@ from octsim.datasets import read, write
 from octsim.sweep import spectra
 
 with job(snakemake) as config:
-    detected = read(snakemake.input.detections, "detections")
+    detected = read(snakemake.input.detections, "detections", config)
     write(spectra(config, detected, snakemake.threads), snakemake.output[0])
