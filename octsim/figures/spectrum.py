@@ -26,8 +26,8 @@ def figure_8(spectra: xr.Dataset, processing: Processing) -> Figure:
     k = spectrum["wavenumber"]
     stages = (
         (level, SKY, "-", f"less its {processing.centre}"),
-        (shaped, BLUE, "--", f"and times the {processing.window} window"),
-        (shaped - shaped.mean(), GREEN, "-.", "and less the mean"),
+        (shaped, BLUE, "--", f"× {processing.window}"),
+        (shaped - shaped.mean(), GREEN, "-.", "less the mean"),
     )
     for values, colour, line, text in stages:
         axes.plot(k, values, color=colour, linestyle=line, label=text)
