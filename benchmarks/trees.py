@@ -24,9 +24,6 @@ from octsim.scene import Cylinder, Medium, Plane, Scene
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
-Bools = NDArray[np.bool_]
-Rows = tuple[Floats, ...]
-"""Rays as one array for each quantity."""
 
 SOURCE = Path(__file__).parent / "tree.c"
 FLAGS = (

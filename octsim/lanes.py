@@ -232,3 +232,29 @@ def keep(block: Block, n: int, wanted: NDArray[np.bool_]) -> int:
                 block[field + kept] = block[field + i]
             kept += 1
     return kept
+
+
+@register_jitable(forceinline=True)
+def sift(
+    reflected: Block,
+    transmitted: Block,
+    n: int,
+    total: int,
+    cos_t: Lanes,
+    min_amplitude: float,
+    wanted: NDArray[np.bool_],
+) -> tuple[int, int]:
+    """Keep of n split lanes those that exist and are not faint; give how many of each.
+
+    `total` lanes, those of negative `cos_t`, are totally reflected; `wanted` is room to work in.
+    """
+    returned, through = n, n
+    if total > 0 or min_amplitude > 0:
+        for i in range(n):
+            wanted[i] = cos_t[i] >= 0 and abs(transmitted[AMPLITUDE + i]) >= min_amplitude
+        through = keep(transmitted, n, wanted)
+    if min_amplitude > 0:
+        for i in range(n):
+            wanted[i] = abs(reflected[AMPLITUDE + i]) >= min_amplitude
+        returned = keep(reflected, n, wanted)
+    return returned, through

@@ -25,10 +25,10 @@ from octsim.lanes import (
     advance_chosen,
     choose,
     direction,
-    keep,
     launch,
     meet_nearest,
     position,
+    sift,
     split,
 )
 from octsim.scene import Scene
@@ -206,15 +206,7 @@ def _trace(
                 met, beyond = waiting.blocks[top + 1], waiting.blocks[top + 2]
                 advance_chosen(block, n, chosen, count, distance, cos_i, faces.n_i[f], met, cos_met)
                 total = split(faces, f, met, count, cos_met, cos_t, beyond)
-                through, returned = count, count
-                if total > 0 or min_amplitude > 0:
-                    for i in range(count):
-                        wanted[i] = cos_t[i] >= 0 and abs(beyond[AMPLITUDE + i]) >= min_amplitude
-                    through = keep(beyond, count, wanted)
-                if min_amplitude > 0:
-                    for i in range(count):
-                        wanted[i] = abs(met[AMPLITUDE + i]) >= min_amplitude
-                    returned = keep(met, count, wanted)
+                returned, through = sift(met, beyond, count, total, cos_t, min_amplitude, wanted)
                 outcomes[Outcome.TOTALLY_REFLECTED] += total
                 outcomes[Outcome.FAINT] += 2 * count - total - through - returned
                 here = code * faces.kind.size + 2 * faces.surface[f]

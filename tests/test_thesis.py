@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import reference
 import xarray as xr
+from test_tracing import literal
 
 import octsim
 
@@ -99,22 +100,11 @@ def test_spectra_agree_with_a_literal_reading_in_absolute_scale(
         overlay,
     )
     spectra = octsim.spectra(config, octsim.detections(config))
-    index, objective, tracing = config.scene.refractive_index, config.objective, config.tracing
     k = reference.wavenumbers(
         config.spectrum.wavelength.min, config.spectrum.wavelength.max, config.spectrum.samples
     )
     assert np.allclose(spectra["wavenumber"], k, rtol=1e-15)
     for diameter, spectrum in zip((1.1, 1.2), spectra["intensity"].values, strict=True):
-        literal = reference.trace(
-            reference.Scene(index.glass, index.water, index.neuron, config.scene.gap, diameter),
-            reference.Instrument(
-                objective.numerical_aperture,
-                objective.focus_distance,
-                objective.magnification,
-                config.detector.core_diameter,
-            ),
-            reference.Settings(tracing.rays, tracing.max_intersections, tracing.min_amplitude),
-            0.58 * diameter + 0.06,
-        )
-        expected = reference.spectrum(literal, k)
+        traced = literal(config, diameter, 0.58 * diameter + 0.06)
+        expected = reference.spectrum(traced.detections, k)
         assert np.abs(spectrum - expected).max() <= 1e-9 * expected.max()
