@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from octsim.beam import Beam
 from octsim.faces import Faces, Kind
 from octsim.intersection import cross_cylinder, enter_cylinder, meet_plane
-from octsim.optics import Vector, cos_transmitted_squared, fresnel, reflect, refract
+from octsim.optics import Vector, cos_transmitted_squared, fresnel, reflect, refract, unit
 
 Block = NDArray[np.float64]
 Lanes = NDArray[np.float64]
@@ -219,6 +219,9 @@ def split(
         for i in range(n):
             normal = Vector((met[X + i] - x) * scale, 0.0, (met[Z + i] - z) * scale)
             leave(met, i, normal, n_i, n_t, cos_i[i], cos_t[i], beyond)
+            # far from where z = 0 the normal of a thin cylinder is not quite a unit vector
+            turn(met, i, unit(direction(met, i)))
+            turn(beyond, i, unit(direction(beyond, i)))
     return total
 
 

@@ -52,14 +52,15 @@ def cos_transmitted_squared(n_i: float, n_t: float, cos_i: float) -> float:
     r"""Square of the cosine of the angle of refraction; negative beyond the critical angle.
 
     .. math:: \cos^2\theta_t = 1 - \eta^2 (1 - \cos^2\theta_i)
-                             = (1 - \eta)(1 + \eta) + \eta^2\cos^2\theta_i,
+                             = (n_t - n_i)(n_t + n_i) / n_t^2 + \eta^2\cos^2\theta_i,
               \quad \eta = n_i / n_t
 
     Snell's law (thesis §4.3.1). The second form has no cancellation for :math:`\eta \le 1` and is
-    exactly :math:`\cos^2\theta_i` where the indices are equal.
+    exactly :math:`\cos^2\theta_i` where the indices are equal; where they nearly are, their
+    difference is exact, which that of η from 1 is not.
     """
     eta = n_i / n_t
-    return (1 - eta) * (1 + eta) + eta * eta * cos_i * cos_i
+    return (n_t - n_i) * (n_t + n_i) / (n_t * n_t) + eta * eta * cos_i * cos_i
 
 
 @register_jitable(forceinline=True)
@@ -83,6 +84,19 @@ def refract(
 
 
 @register_jitable(forceinline=True)
+def unit(direction: Vector) -> Vector:
+    r"""Take out what rounding has added to the length of a direction, of nearly 1.
+
+    .. math:: \hat v = \tfrac12 (3 - |v|^2)\, v
+
+    One step of Newton's for :math:`1 / |v|`: an error δ of the length becomes one of about δ².
+    """
+    x, y, z = direction.x, direction.y, direction.z
+    scale = 1.5 - 0.5 * (x * x + y * y + z * z)
+    return Vector(scale * x, scale * y, scale * z)
+
+
+@register_jitable(forceinline=True)
 def fresnel(n_i: float, n_t: float, cos_i: float, cos_t: float) -> tuple[float, float]:
     r"""Amplitude coefficients of reflection and transmission for unpolarised light.
 
@@ -91,7 +105,13 @@ def fresnel(n_i: float, n_t: float, cos_i: float, cos_t: float) -> tuple[float, 
         t = \sqrt{\tfrac12 (t_\parallel^2 + t_\perp^2)}
 
     (thesis §4.3.2); r is negative for :math:`n_t > n_i`. Below the critical angle only: beyond it
-    r = 1 and nothing is transmitted.
+    r = 1 and nothing is transmitted. By Snell's law the differences in r are, without cancelling
+    where the indices are nearly equal,
+
+    .. math::
+        r_\perp = \frac{(n_i - n_t)(n_i + n_t)}{(n_i\cos\theta_i + n_t\cos\theta_t)^2}, \quad
+        r_\parallel = \frac{(n_t - n_i)(n_t + n_i)(\cos^2\theta_i + \cos^2\theta_t - 1)}
+                           {(n_t\cos\theta_i + n_i\cos\theta_t)^2}
 
     Parameters
     ----------
@@ -107,8 +127,10 @@ def fresnel(n_i: float, n_t: float, cos_i: float, cos_t: float) -> tuple[float, 
     """
     over_parallel = 1 / (n_t * cos_i + n_i * cos_t)
     over_perpendicular = 1 / (n_i * cos_i + n_t * cos_t)
-    r_parallel = (n_t * cos_i - n_i * cos_t) * over_parallel
-    r_perpendicular = (n_i * cos_i - n_t * cos_t) * over_perpendicular
+    contrast = (n_i - n_t) * (n_i + n_t)
+    brewster = cos_i * cos_i + cos_t * cos_t - 1  # zero where nothing of it is reflected
+    r_parallel = contrast * brewster * (over_parallel * over_parallel)
+    r_perpendicular = contrast * (over_perpendicular * over_perpendicular)
     t_parallel = 2 * n_i * cos_i * over_parallel
     t_perpendicular = 2 * n_i * cos_i * over_perpendicular
     r = math.sqrt(0.5 * (r_parallel * r_parallel + r_perpendicular * r_perpendicular))
