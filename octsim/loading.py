@@ -15,6 +15,7 @@ from pydantic_core import ErrorDetails
 from octsim.config import Config, FocusLine, Range
 from octsim.errors import ConfigError, OctsimWarning
 from octsim.plates import aliasing_step
+from octsim.rounding import rounding_remarks
 from octsim.units import format_length
 
 
@@ -267,7 +268,7 @@ def remarks(config: Config) -> list[str]:
             f"to, {format_length(fitted.start)} to {format_length(fitted.stop)}; widen "
             "focus_law.diameters"
         )
-    return said
+    return said + rounding_remarks(config)
 
 
 def parts_of(config: Config, *keys: str) -> dict[str, object]:
