@@ -45,6 +45,7 @@ STAGES = (
 FIGURES = (1, 6, 7, 8, 9, 10, 11, 12)
 LOCK = FileLock(f"results/{run.run}/.lock")  # held from the start of a run to its end
 SCRIPTS = Path(workflow.basedir) / "workflow" / "scripts"
+BENCHMARKS = Path(workflow.basedir) / "benchmarks"
 
 
 wildcard_constraints:
@@ -222,3 +223,24 @@ rule figures:
         "Draw the figures"
     script:
         "workflow/scripts/figures.py"
+
+
+rule stability:
+    output:
+        stability=update(expand("results/{run}/stability.nc", run=run.run)),
+        figures=update(
+            expand("results/{run}/figures/stability.{form}", run=run.run, form=("png", "svg"))
+        ),
+    log:
+        f"results/{run.run}/logs/stability.log",
+    benchmark:
+        f"results/{run.run}/benchmarks/stability.tsv"
+    threads: workflow.cores
+    params:
+        # when it is asked for: the benchmarks need not be beside a workflow that is copied
+        benchmark=lambda _: source_digest(BENCHMARKS / "stability.py"),
+        made_from=made_from("stability", *INSTRUMENT, "spectrum", "sweep"),
+    message:
+        "Measure rounding at the extremes against 50 digits"
+    script:
+        "workflow/scripts/stability.py"

@@ -58,6 +58,33 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "status": ("1", "whether the fit has a peak"),
     "wavenumber": ("um-1", "wavenumber in vacuum, 2 pi / wavelength"),
     "width": ("um", "standard deviation of the Gaussian"),
+    # the stability matrix; its bound is max(1e-9, 8 ε × condition number)
+    "cell": ("1", "cell of the stability matrix: corner / factor / value"),
+    "corner": ("1", "config from which one factor is changed"),
+    "factor": ("1", "what is changed"),
+    "value": ("1", "what it is changed to"),
+    "paths_compared": ("1", "number of detected light paths that were compared"),
+    "paths_at_edge": ("1", "number of light paths that rounding decides about"),
+    "optical_path_length_error": ("um", "largest error of the optical path length"),
+    "phase_error": ("rad", "largest error of the phase at the largest wavenumber"),
+    "phase_condition": ("rad", "condition number where the phase's share of the bound is largest"),
+    "phase_share": ("1", "largest error of the phase over its bound"),
+    "amplitude_error": ("1", "largest relative error of the amplitude"),
+    "amplitude_condition": ("1", "condition number where the amplitude's share is largest"),
+    "amplitude_share": ("1", "largest error of the amplitude over its bound"),
+    "phase_slope_error": ("mrad/nm", "rounding of the phase slope of the brightest far path"),
+    "phase_slope_condition": ("rad", "condition number of that path's phase"),
+    "phase_slope_share": ("1", "rounding of the phase slope over its bound"),
+    "spectrum_error": ("1", "largest error of the intensity's sum, over the largest intensity"),
+    "spectrum_condition": ("1", "condition number of that sum"),
+    "spectrum_share": ("1", "error of the sum over its bound"),
+    "launch_error": ("1", "largest error of a ray's place, over the objective's radius"),
+    "launch_condition": ("1", "condition number of the objective's radius"),
+    "launch_share": ("1", "error of a ray's place over its bound"),
+    "single_phase_error": ("rad", "largest error of the phase in float32"),
+    "single_amplitude_error": ("1", "largest relative error of the amplitude in float32"),
+    "single_lost": ("1", "fraction of light paths that float32 loses"),
+    "reason": ("1", "why a cell is refused, warned of or beyond the bound"),
 }
 INSTRUMENT = ("scene", "objective", "detector", "tracing")
 """Parts of a config that every stage that traces reads."""
@@ -180,6 +207,7 @@ def _depends_on(stage: str, config: Config) -> tuple[str, ...]:
         "spectra": (*swept, "spectrum"),
         "fourier": (*swept, "spectrum", "processing"),
         "phase_slope": (*swept, "spectrum", "processing"),
+        "stability": (*INSTRUMENT, "spectrum", "sweep"),
     }
     return parts.get(stage, law)
 
