@@ -38,12 +38,18 @@ def _amplitude_error(pair: Pair) -> float:
 def worst(
     errors: list[tuple[float, Key]], conditions: Conditions, which: int, edges: set[Key]
 ) -> Cost:
-    """Give the error with the largest share of its bound; paths at an edge go to `edges`."""
+    """Give the largest error and share of the bound; paths at an edge go to `edges`.
+
+    Errors below the tolerance are within any bound. Of those only the largest gets its condition,
+    and its share is that of the tolerance: none of them has a larger one.
+    """
     found = []
-    for place, (error, key) in enumerate(sorted(errors, reverse=True)):
-        if error <= TOLERANCE and place > 0 and found:
+    for error, key in sorted(errors, reverse=True):
+        condition = conditions.of(key)[which]
+        if error <= TOLERANCE:
+            found.append(Cost(error, condition, error / TOLERANCE))
             break
-        measured = cost(error, conditions.of(key)[which])
+        measured = cost(error, condition)
         if measured.share > 1 and conditions.at_edge(key):
             edges.add(key)
         else:

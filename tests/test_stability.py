@@ -1,6 +1,9 @@
 """Rounding: octsim's doubles beside a tracer of 50 digits, at the default and at the extremes."""
 
+import ast
 import math
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -29,6 +32,7 @@ from octsim.rounding import rounding_remarks
 from octsim.scene import Scene, neuron_on_glass
 from octsim.tracing import path_name
 
+ROOT = Path(__file__).parent.parent
 BASE = load_config()
 MATRIX = {cell.name: cell for cell in cells(BASE)}
 CELLS = (
@@ -204,3 +208,25 @@ def test_the_heat_map_is_the_same_bytes_each_time(few: xr.Dataset, tmp_path: Pat
         with look():
             save(stability_figure(few), tmp_path / copy)
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+
+
+def test_a_lack_of_mpmath_is_one_line_with_the_remedy() -> None:
+    code = (
+        "import sys; sys.modules['mpmath'] = None; sys.path.insert(0, 'benchmarks'); import exact"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert done.stderr.count("\n") == 1
+    assert "make .venv/dev" in done.stderr
+
+
+def test_the_package_imports_neither_mpmath_nor_the_benchmarks() -> None:
+    beside = {path.stem for path in (ROOT / "benchmarks").glob("*.py")} | {"mpmath"}
+    for path in (ROOT / "octsim").rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                assert not beside & {alias.name.split(".")[0] for alias in node.names}, path
+            if isinstance(node, ast.ImportFrom):
+                assert (node.module or "").split(".")[0] not in beside, path
