@@ -43,7 +43,8 @@ format: .venv/dev
 	$(BIN)/ruff format
 	$(BIN)/snakefmt Snakefile
 
-docs: results
+docs: results .venv/dev
+	$(BIN)/snakemake stability --cores $(CORES)
 	$(BIN)/python docs/generate.py
 
 .venv/bin/python:
