@@ -85,7 +85,7 @@ def inputs_of(config: Config, diameter: float, focus: float, x: float, y: float)
 
 @dataclass(frozen=True)
 class Ray:
-    """One straight piece of light, at its start; `code` as `octsim.tracing.path_name` reads it."""
+    """One straight piece of light, at its start; `code` as `octsim.paths.path_name` reads it."""
 
     at: Triple
     along: Triple

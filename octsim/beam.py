@@ -1,9 +1,10 @@
 """The light that leaves the objective: where rays start on its disk, and where they head."""
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
+from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.config import Objective, Tracing
@@ -11,6 +12,9 @@ from octsim.config import Objective, Tracing
 # The golden ratio (√5 − 1) / 2 as a sum. A multiple of the first is exact, so that whole turns come
 # off it without rounding: the ten millionth ray is as well placed as the first.
 _COARSE, _FINE = 41475558 / 2**26, 1.3387117138243649e-08
+
+
+Coordinate = TypeVar("Coordinate", float, NDArray[np.float64])
 
 
 class Beam(NamedTuple):
@@ -64,9 +68,10 @@ def vogel_spiral(num: int, radius: float) -> tuple[NDArray[np.float64], NDArray[
     return distance * np.cos(angle), distance * np.sin(angle)
 
 
+@register_jitable
 def aim(
-    x: NDArray[np.float64], y: NDArray[np.float64], focus_distance: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    x: Coordinate, y: Coordinate, focus_distance: float
+) -> tuple[Coordinate, Coordinate, Coordinate]:
     """Give unit vectors (vx, vy, vz) from points (x, y) of the objective to the focus above it.
 
     They do not depend on the height of the focus, as the objective moves with it.

@@ -20,8 +20,12 @@ from octsim.lanes import (
     LANES,
     PATH,
     RAY,
+    VX,
+    VY,
     Block,
     Lanes,
+    X,
+    Y,
     advance_chosen,
     choose,
     direction,
@@ -47,6 +51,14 @@ class Detections(NamedTuple):
     """Amplitude, weighted by the detector, (D,)."""
     optical_path_length: NDArray[np.float64]
     """Path from the focus to the fibre, beyond that of an axial ray through the lens, (D,), µm."""
+    x: NDArray[np.float64]
+    """Where it leaves the focal plane, (D,), µm."""
+    y: NDArray[np.float64]
+    """The same, along the cylinder, (D,), µm."""
+    vx: NDArray[np.float64]
+    """Unit direction there, x component, (D,); it heads down."""
+    vy: NDArray[np.float64]
+    """The same, y component, (D,)."""
     segments: int
     """Straight pieces of ray that were traced."""
     outcomes: NDArray[np.int64]
@@ -60,6 +72,10 @@ class _Found(NamedTuple):
     path: NDArray[np.int64]
     amplitude: NDArray[np.float64]
     optical_path_length: NDArray[np.float64]
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    vx: NDArray[np.float64]
+    vy: NDArray[np.float64]
 
 
 class _Waiting(NamedTuple):
@@ -75,8 +91,9 @@ class _Waiting(NamedTuple):
 @register_jitable(forceinline=True)
 def _room_for_found(size: int) -> _Found:
     return _Found(
-        np.empty(size, np.int64), np.empty(size, np.int64), np.empty(size), np.empty(size)
-    )
+        np.empty(size, np.int64), np.empty(size, np.int64), np.empty(size), np.empty(size),
+        np.empty(size), np.empty(size), np.empty(size), np.empty(size),
+    )  # fmt: skip
 
 
 @register_jitable(forceinline=True)
@@ -86,6 +103,10 @@ def _doubled(found: _Found) -> _Found:
         np.concatenate((found.path, np.empty_like(found.path))),
         np.concatenate((found.amplitude, np.empty_like(found.amplitude))),
         np.concatenate((found.optical_path_length, np.empty_like(found.optical_path_length))),
+        np.concatenate((found.x, np.empty_like(found.x))),
+        np.concatenate((found.y, np.empty_like(found.y))),
+        np.concatenate((found.vx, np.empty_like(found.vx))),
+        np.concatenate((found.vy, np.empty_like(found.vy))),
     )
 
 
@@ -143,12 +164,15 @@ def _detect(
             found.path[detected] = code
             found.amplitude[detected] = beam.amplitude[ray] * block[AMPLITUDE + i] * weight
             found.optical_path_length[detected] = block[PATH + i] + to_fibre
+            found.x[detected] = block[X + i] + to_focus[i] * block[VX + i]
+            found.y[detected] = block[Y + i] + to_focus[i] * block[VY + i]
+            found.vx[detected], found.vy[detected] = block[VX + i], block[VY + i]
             detected += 1
     return found, detected
 
 
 @compiled()
-def _trace(
+def trace_tree(
     faces: Faces,
     beam: Beam,
     detector: Detector,
@@ -156,6 +180,7 @@ def _trace(
     max_intersections: int,
     min_amplitude: float,
 ) -> tuple[Any, ...]:
+    """Trace the tree, in compiled code: `trace` says what, and `Detections` what comes back."""
     # a plain tuple: making a named one on the way out crashes when an interrupt is waiting
     found, detected, segments = _room_for_found(beam.vx.size), 0, 0
     outcomes = np.zeros(OUTCOMES, np.int64)
@@ -218,9 +243,34 @@ def _trace(
         found.path[:detected].copy(),
         found.amplitude[:detected].copy(),
         found.optical_path_length[:detected].copy(),
+        found.x[:detected].copy(),
+        found.y[:detected].copy(),
+        found.vx[:detected].copy(),
+        found.vy[:detected].copy(),
         segments,
         outcomes,
     )
+
+
+def check_reach(scene: Scene, detector: Detector, focus: float, max_intersections: int) -> None:
+    """Refuse what `trace` can't trace.
+
+    Raises
+    ------
+    ValueError
+        If the focus is not below the focus distance, as the objective would not be in the glass, or
+        there are more `max_intersections` than light paths can be numbered for.
+    """
+    if not focus < detector.focus_distance:
+        raise ValueError(
+            f"focus: {focus} µm given; it must be below the focus distance, "
+            f"{detector.focus_distance} µm"
+        )
+    if (2 * len(scene.surfaces)) ** max_intersections >= 2**62:
+        raise ValueError(
+            f"max_intersections: {max_intersections} given; the light paths of so many meetings "
+            f"with {len(scene.surfaces)} surfaces can't be numbered, so give less"
+        )
 
 
 def trace(
@@ -256,34 +306,9 @@ def trace(
     Raises
     ------
     ValueError
-        If the focus is not below the focus distance, as the objective would not be in the glass, or
-        there are more `max_intersections` than light paths can be numbered for.
+        As `check_reach` says.
     """
-    if not focus < detector.focus_distance:
-        raise ValueError(
-            f"focus: {focus} µm given; it must be below the focus distance, "
-            f"{detector.focus_distance} µm"
-        )
-    if (2 * len(scene.surfaces)) ** max_intersections >= 2**62:
-        raise ValueError(
-            f"max_intersections: {max_intersections} given; the light paths of so many meetings "
-            f"with {len(scene.surfaces)} surfaces can't be numbered, so give less"
-        )
+    check_reach(scene, detector, focus, max_intersections)
     return Detections(
-        *_trace(faces_of(scene), beam, detector, focus, max_intersections, min_amplitude)
+        *trace_tree(faces_of(scene), beam, detector, focus, max_intersections, min_amplitude)
     )
-
-
-def path_name(code: int, surface_names: str = "PC") -> str:
-    """Read the code of a light path: its surfaces in order, R reflected or T transmitted at each.
-
-    Examples
-    --------
-    >>> path_name(0b1_01_11)
-    'PT CT'
-    """
-    meetings = []
-    while code > 1:
-        code, digit = divmod(code, 2 * len(surface_names))
-        meetings.append(surface_names[digit // 2] + "RT"[digit % 2])
-    return " ".join(reversed(meetings))

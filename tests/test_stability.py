@@ -28,9 +28,9 @@ from octsim.figures.stability import stability_figure
 from octsim.figures.style import look, save
 from octsim.loading import load_config, remarks
 from octsim.optics import Vector, fresnel, unit
+from octsim.paths import path_name
 from octsim.rounding import rounding_remarks
 from octsim.scene import Scene, neuron_on_glass
-from octsim.tracing import path_name
 
 ROOT = Path(__file__).parent.parent
 BASE = load_config()
