@@ -11,6 +11,7 @@ from .law import gaussian_fits as gaussian_fits
 from .loading import load_config as load_config
 from .phase import fourier as fourier
 from .phase import phase_slope as phase_slope
+from .shares import light_paths as light_paths
 from .sweep import detections as detections
 from .sweep import spectra as spectra
 

@@ -112,16 +112,32 @@ class DetectorConfig(Section):
     )
 
 
+PRESETS: Mapping[str, Mapping[str, Any]] = {
+    "draft": {"scheme": "paths", "accuracy": 3e-2},
+    "standard": {"scheme": "paths", "accuracy": 1e-4},
+    "reference": {"scheme": "paths", "accuracy": 1e-8},
+}
+"""Points of the trade of cost for accuracy: `snakemake tradeoff` measures them."""
+
+
 class Tracing(Section):
     """How rays are placed and how far each is followed."""
 
-    scheme: Literal["vogel"] = _key("vogel", "the thesis's sunflower spiral")
+    preset: Literal["draft", "standard", "reference"] | None = _key(
+        None, "a named scheme and accuracy, for those that are not given beside it"
+    )
+    scheme: Literal["vogel", "paths"] = _key(
+        "vogel", "the thesis's sunflower spiral, or each light path to a stated accuracy"
+    )
+    accuracy: Annotated[Number, Field(ge=1e-12, le=0.1)] = _key(
+        1e-4, "of the scheme paths: largest error of the intensity over the largest intensity"
+    )
     rays: Annotated[int, Field(ge=1, le=10_000_000)] = _key(3000, "at the objective")
     max_intersections: Annotated[int, Field(ge=1, le=30)] = _key(
         11, "meetings with the plane and the cylinder on one ray"
     )
     min_amplitude: Annotated[Number, Field(ge=0, lt=1)] = _key(
-        0.0, "a fainter ray is dropped; relative to the launch amplitude"
+        0.0, "a fainter ray is dropped; relative to the launch amplitude; of the scheme vogel"
     )
 
 

@@ -15,15 +15,19 @@ from octsim.config import Config
 from octsim.errors import DatasetError
 from octsim.files import reason, whole
 from octsim.provenance import source_digest
+from octsim.reading import keys_behind, part_of
 
 MEANINGS: Mapping[str, tuple[str, str]] = {
     # name: (units, long_name)
+    "accuracy_status": ("1", "whether the accuracy that was asked for is reached"),
     "amplitude": ("1", "amplitude"),
     "centre": ("um", "focus of greatest intensity"),
     "component": ("1", "component of the Fourier transform"),
     "component_phase_slope": ("mrad/nm", "phase slope of each component"),
     "depth": ("um", "optical depth, half of the optical path difference"),
     "diameter": ("um", "diameter of the cylinder"),
+    "field_amplitude": ("1", "magnitude of the field at the middle of the band"),
+    "field_phase": ("rad", "phase of the field at the middle of the band, in (-pi, pi]"),
     "focus": ("um", "height of the focus above the glass"),
     "fraction": ("1", "height of the focus over the diameter"),
     "ideal_component": ("1", "strongest component for a spectrum cos(2ndk)"),
@@ -33,23 +37,31 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     ),
     "ideal_phase_slope": ("mrad/nm", "phase slope for a spectrum cos(2ndk)"),
     "intensity": ("1", "intensity, relative to all launched light in phase"),
+    "intensity_error": ("1", "estimated error of the intensity, over the largest"),
     "intercept": ("um", "intercept of the focus law"),
     "largest_deviation": ("mrad/nm", "largest deviation of the phase slope from the prediction"),
     "largest_deviation_diameter": ("um", "diameter at which the deviation is largest"),
     "magnitude": ("1", "magnitude of the component"),
     "mean_ideal_phase_slope": ("mrad/nm", "mean phase slope for a spectrum cos(2ndk)"),
+    "mean_optical_path_length": ("um", "mean optical path length of the rays"),
     "mean_phase_slope": ("mrad/nm", "mean phase slope"),
+    "missing_field": ("1", "estimated field of what was left out"),
     "offset": ("1", "constant below the Gaussian"),
     "optical_path_length": ("um", "optical path length from the focus to the detector"),
     "outcome": ("1", "how a segment of ray ended, or why it was not traced"),
     "outcomes": ("1", "number of segments of ray with each outcome"),
+    "path": ("1", "light path: P plane, C cylinder; R reflected, T transmitted"),
+    "path_code": ("1", "code of the light path"),
+    "path_rays": ("1", "number of rays on the path"),
     "phase": ("rad", "phase of the component, in (-pi, pi]"),
     "phase_slope": ("mrad/nm", "phase slope of the strongest component"),
     "phase_slope_standard_deviation": ("mrad/nm", "scatter of the phase slope about its mean"),
     "predicted_phase_slope": ("mrad/nm", "predicted phase slope, n_neuron (k_min + k_max)"),
     "rays_detected": ("1", "number of rays detected"),
     "residual": ("1", "root mean square residual of the fit"),
+    "rough_amplitude": ("1", "amplitude by a rougher rule, to estimate the error"),
     "segments_traced": ("1", "number of straight pieces of ray traced"),
+    "share": ("1", "share of the intensity, as a mean over the band"),
     "slope": ("1", "slope of the focus law"),
     "standard_deviation_from_ideal": (
         "mrad/nm",
@@ -85,9 +97,39 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "single_amplitude_error": ("1", "largest relative error of the amplitude in float32"),
     "single_lost": ("1", "fraction of light paths that float32 loses"),
     "reason": ("1", "why a cell is refused, warned of or beyond the bound"),
+    # what accuracy costs; errors are those from a converged reference
+    "setting": ("1", "setting: the key that is varied and its value"),
+    "scheme": ("1", "how rays are placed"),
+    "worst_intensity_error": ("1", "error of the intensity over its maximum, largest of the sweep"),
+    "median_intensity_error": ("1", "error of the intensity over its maximum, median of the sweep"),
+    "intensity_change": ("1", "change of the intensity by rays that are dropped"),
+    "phase_slope_rms_error": ("mrad/nm", "error of the phase slope, rms over the sweep"),
+    "phase_slope_largest_error": ("mrad/nm", "largest error of the phase slope"),
+    "law_slope_error": ("1", "error of the focus law's slope"),
+    "law_intercept_error": ("um", "error of the focus law's intercept"),
+    "focus_error": ("um", "largest error of the focus by the law, over the sweep"),
+    "segments_per_diameter": ("1", "mean number of straight pieces of ray traced a diameter"),
+    "cpu_seconds": ("s", "processor time to trace and sum the sweep"),
+    "peak_memory": ("MiB", "growth of the process's largest resident set"),
+    "unreached": ("1", "number of diameters whose accuracy is said not to be reached"),
+    "beyond_accuracy": ("1", "number of diameters whose error is above the accuracy asked for"),
+    "diameters_traced": ("1", "number of diameters that were traced"),
+    "frontier": ("1", "whether no setting has a smaller error with as few segments"),
+    "phase_slope_frontier": ("1", "whether none has a smaller slope error in as little time"),
+    "default": ("1", "whether it is the run's own setting"),
+    "preset": ("1", "name of the preset that it is"),
+    "target": ("1", "what error the schemes are compared at"),
+    "target_error": ("1", "error that the schemes are compared at"),
+    "rays_segments": ("1", "segments a diameter that counted rays need for it"),
+    "rays_measured": ("1", "whether those are between measured ones, or by the power law"),
+    "paths_segments": ("1", "segments a diameter of the cheapest accuracy measured within it"),
+    "segments_ratio": ("1", "how many times fewer segments that is"),
+    "paths_segments_between": ("1", "segments a diameter between the efficient accuracies"),
+    "segments_ratio_between": ("1", "how many times fewer segments those are"),
+    "rays_law_factor": ("1", "factor of the power law error = factor * segments^exponent"),
+    "rays_law_exponent": ("1", "exponent of that law, of counted rays"),
+    "rays_law_error": ("1", "error by that law"),
 }
-INSTRUMENT = ("scene", "objective", "detector", "tracing")
-"""Parts of a config that every stage that traces reads."""
 _STANDARD_ERROR = "_standard_error"
 _COMPRESSION = {"zlib": True, "complevel": 4, "shuffle": True}
 
@@ -188,28 +230,13 @@ def read(path: str | Path, stage: str, config: Config | None = None) -> xr.Datas
         raise DatasetError(f"{path}: not octsim's dataset of the stage {stage}; {remedy}")
     if config is not None:
         made_from, asked = json.loads(dataset.attrs["config"]), config.to_dict()
-        parts = dict.fromkeys(_depends_on(stage, config))
-        differ = [part for part in parts if made_from.get(part) != asked[part]]
+        keys = keys_behind(stage, config)
+        differ = [key for key in keys if part_of(made_from, key) != part_of(asked, key)]
         if differ:
             raise DatasetError(
                 f"{path}: made from another config (its {', '.join(differ)} differ); {remedy}"
             )
     return dataset
-
-
-def _depends_on(stage: str, config: Config) -> tuple[str, ...]:
-    """Give the parts of a config that a stage and those before it read."""
-    law = (*INSTRUMENT, "spectrum", "focus_law")
-    swept = (*(law if config.sweep.focus == "law" else INSTRUMENT), "sweep")
-    parts = {
-        "focus_scan": (*INSTRUMENT, "spectrum", "focus_scan"),
-        "detections": swept,
-        "spectra": (*swept, "spectrum"),
-        "fourier": (*swept, "spectrum", "processing"),
-        "phase_slope": (*swept, "spectrum", "processing"),
-        "stability": (*INSTRUMENT, "spectrum", "sweep"),
-    }
-    return parts.get(stage, law)
 
 
 def flags(

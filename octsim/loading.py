@@ -12,11 +12,14 @@ import yaml
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from octsim.config import Config, FocusLine, Range
+from octsim.config import PRESETS, Config, FocusLine, Range
 from octsim.errors import ConfigError, OctsimWarning
 from octsim.plates import aliasing_step
 from octsim.rounding import rounding_remarks
 from octsim.units import format_length
+
+STEEP = 0.92
+"""Numerical aperture over the index of water, above which the scheme paths can miss light."""
 
 
 def load_config(*overlays: str | Path | Mapping[str, Any]) -> Config:
@@ -49,11 +52,11 @@ def load_config(*overlays: str | Path | Mapping[str, Any]) -> Config:
     >>> load_config({"scene": {"gap": "20 nm"}}).scene.gap
     0.02
     """
-    merged: dict[str, Any] = Config().to_dict()
+    given: dict[str, Any] = {}
     for overlay in overlays:
-        merged = _merge(merged, overlay if isinstance(overlay, Mapping) else _read(Path(overlay)))
+        given = _merge(given, overlay if isinstance(overlay, Mapping) else _read(Path(overlay)))
     try:
-        config = Config.model_validate(merged)
+        config = Config.model_validate(_merge(_merge(Config().to_dict(), _preset(given)), given))
     except ValidationError as error:
         raise ConfigError("\n".join(dict.fromkeys(map(_explain, error.errors())))) from None
     problems = list(_impossible(config))
@@ -62,6 +65,13 @@ def load_config(*overlays: str | Path | Mapping[str, Any]) -> Config:
     for remark in remarks(config):
         warnings.warn(remark, OctsimWarning, stacklevel=2)
     return config
+
+
+def _preset(given: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Give what a named preset stands for; keys given beside it go above."""
+    tracing = given.get("tracing")
+    name = tracing.get("preset") if isinstance(tracing, Mapping) else None
+    return {"tracing": PRESETS.get(name, {})} if isinstance(name, str) else {}
 
 
 class _Loader(yaml.SafeLoader):
@@ -232,9 +242,19 @@ def _impossible(config: Config) -> Iterator[str]:
         )
 
 
+def _steep_remarks(config: Config) -> Iterator[str]:
+    aperture, water = config.objective.numerical_aperture, config.scene.refractive_index.water
+    if config.tracing.scheme == "paths" and STEEP * water < aperture:
+        yield (
+            f"tracing.scheme: 'paths' with a numerical aperture of {aperture}, above {STEEP} of "
+            f"the index of water, {water}: light near grazing incidence can be missed, and the "
+            "error with it; compare with 'vogel'"
+        )
+
+
 def remarks(config: Config) -> list[str]:
     """Say what is possible but likely not meant, a line each."""
-    said = []
+    said = list(_steep_remarks(config))
     band, diameters = config.spectrum.wavelength, config.sweep.diameters
     n_neuron = config.scene.refractive_index.neuron
     k_min, k_max = 2 * np.pi / band.max, 2 * np.pi / band.min
@@ -269,14 +289,3 @@ def remarks(config: Config) -> list[str]:
             "focus_law.diameters"
         )
     return said + rounding_remarks(config)
-
-
-def parts_of(config: Config, *keys: str) -> dict[str, object]:
-    """Give what stands under some dotted keys of a config, as plain data."""
-    parts = {}
-    for key in keys:
-        part: Any = config.to_dict()
-        for name in key.split("."):
-            part = part[name]
-        parts[key] = part
-    return parts

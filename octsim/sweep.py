@@ -1,16 +1,28 @@
 """The sweep over diameters: detected rays, and the spectra that they sum to (figure 8)."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
 from octsim.config import Config, FocusLine
-from octsim.datasets import make
+from octsim.datasets import flags, make
 from octsim.detection import Outcome
 from octsim.errors import OctsimError
-from octsim.simulation import tracer
-from octsim.spectrum import intensity, wavenumbers
+from octsim.light import AccuracyStatus, Light
+from octsim.simulation import summer, tracer
+from octsim.spectrum import wavenumbers
 from octsim.threads import each
+
+RAYS: Mapping[str, str] = {
+    "path_code": "path",
+    "amplitude": "amplitude",
+    "rough_amplitude": "rough_amplitude",
+    "optical_path_length": "optical_path_length",
+}
+"""What is stored of each ray, and its name in `Light`."""
 
 
 def sweep_foci(config: Config, law: xr.Dataset | None) -> NDArray[np.float64]:
@@ -67,9 +79,10 @@ def detections(config: Config, law: xr.Dataset | None = None, threads: int = 1) 
     Returns
     -------
     Dataset
-        amplitude and optical_path_length (ray) of the rays that reach the detector, diameter after
-        diameter (CF contiguous ragged: rays_detected(diameter) counts them), and how all segments
-        of ray ended, outcomes(diameter, outcome).
+        path_code, amplitude, rough_amplitude and optical_path_length (ray) of the rays that reach
+        the detector, diameter after diameter (CF contiguous ragged: rays_detected(diameter) counts
+        them); what was left out and whether the accuracy is reached (diameter); and, of the scheme
+        vogel, how all segments of ray ended, outcomes(diameter, outcome).
     """
     diameters, foci = config.sweep.diameters.values(), sweep_foci(config, law)
     trace_at = tracer(config)
@@ -78,25 +91,48 @@ def detections(config: Config, law: xr.Dataset | None = None, threads: int = 1) 
         zip(diameters.tolist(), foci.tolist(), strict=True),
         threads,
     )
-    counts = np.array([d.amplitude.size for d in found])
+    counts = np.array([light.amplitude.size for light in found])
+    status = np.array([light.status for light in found])
+    variables: dict[str, Any] = {
+        **{
+            name: ("ray", np.concatenate([getattr(light, field) for light in found]))
+            for name, field in RAYS.items()
+        },
+        "rays_detected": ("diameter", counts, {"sample_dimension": "ray"}),
+        "segments_traced": ("diameter", np.array([light.segments for light in found])),
+        "missing_field": ("diameter", np.array([light.missing for light in found])),
+        "accuracy_status": ("diameter", *flags(AccuracyStatus, status)),
+        "focus": ("diameter", foci),
+    }
+    coordinates: dict[str, Any] = {"diameter": diameters}
+    outcomes = [light.outcomes for light in found if light.outcomes is not None]
+    if outcomes:
+        variables["outcomes"] = (("diameter", "outcome"), np.stack(outcomes))
+        coordinates["outcome"] = [outcome.name.lower() for outcome in Outcome]
     return make(
         "detections",
         config,
         "Rays that reach the detector, for each diameter",
-        {
-            "amplitude": ("ray", np.concatenate([d.amplitude for d in found])),
-            "optical_path_length": (
-                "ray",
-                np.concatenate([d.optical_path_length for d in found]),
-            ),
-            "rays_detected": ("diameter", counts, {"sample_dimension": "ray"}),
-            "segments_traced": ("diameter", np.array([d.segments for d in found])),
-            "outcomes": (("diameter", "outcome"), np.stack([d.outcomes for d in found])),
-            "focus": ("diameter", foci),
-        },
-        {"diameter": diameters, "outcome": [outcome.name.lower() for outcome in Outcome]},
+        variables,
+        coordinates,
         __name__,
     )
+
+
+def stored_light(detected: xr.Dataset) -> list[Light]:
+    """Read the light of each diameter back from a dataset of the stage detections."""
+    ends = np.cumsum(detected["rays_detected"].values)[:-1]
+    rays = [np.split(detected[name].values, ends) for name in RAYS]
+    return [
+        Light(path, amplitude, rough, optical, missing, segments, AccuracyStatus(status))
+        for path, amplitude, rough, optical, missing, segments, status in zip(
+            *rays,
+            detected["missing_field"].values.tolist(),
+            detected["segments_traced"].values.tolist(),
+            detected["accuracy_status"].values.tolist(),
+            strict=True,
+        )
+    ]
 
 
 def spectra(config: Config, detected: xr.Dataset, threads: int = 1) -> xr.Dataset:
@@ -105,21 +141,38 @@ def spectra(config: Config, detected: xr.Dataset, threads: int = 1) -> xr.Datase
     Returns
     -------
     Dataset
-        intensity(diameter, wavenumber) and focus(diameter).
+        intensity(diameter, wavenumber) and focus(diameter), with the estimated error of the
+        intensity and whether that is as asked (diameter).
     """
-    k = wavenumbers(config.spectrum)
-    ends = np.cumsum(detected["rays_detected"].values)[:-1]
-    amplitudes = np.split(detected["amplitude"].values, ends)
-    paths = np.split(detected["optical_path_length"].values, ends)
-    spectrum = each(lambda rays: intensity(*rays, k), zip(amplitudes, paths, strict=True), threads)
+    spectrum, error = zip(*each(summer(config), stored_light(detected), threads), strict=True)
+    status = detected["accuracy_status"].values
+    if config.tracing.scheme == "paths":
+        # the error is judged at the samples themselves
+        late = (status == AccuracyStatus.REACHED) & (np.array(error) > config.tracing.accuracy)
+        status = np.where(late, AccuracyStatus.NOT_REACHED, status)
     return make(
         "spectra",
         config,
         "Spectrum of the detected light, for each diameter",
         {
             "intensity": (("diameter", "wavenumber"), np.stack(spectrum)),
+            "intensity_error": ("diameter", np.array(error)),
+            "accuracy_status": ("diameter", *flags(AccuracyStatus, status)),
             "focus": ("diameter", detected["focus"].values),
         },
-        {"diameter": detected["diameter"].values, "wavenumber": k},
+        {"diameter": detected["diameter"].values, "wavenumber": wavenumbers(config.spectrum)},
         __name__,
+    )
+
+
+def unreached(measured: xr.Dataset) -> str | None:
+    """Say in a line at how many points the accuracy asked for is not reached, if at any."""
+    status = measured["accuracy_status"].values
+    missed = (status != AccuracyStatus.REACHED) & (status != AccuracyStatus.NOT_CONTROLLED)
+    if not missed.any():
+        return None
+    worst = float(measured["intensity_error"].values[missed].max())
+    return (
+        f"the accuracy is not reached at {missed.sum()} of {missed.size} points (accuracy_status "
+        f"says where and why; estimated error up to {worst:.2g}): ask for less by tracing.accuracy"
     )

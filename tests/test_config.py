@@ -10,9 +10,10 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from octsim.config import Config
+from octsim.config import PRESETS, Config
 from octsim.errors import ConfigError, OctsimWarning
-from octsim.loading import known_keys, load_config, parts_of
+from octsim.loading import known_keys, load_config, remarks
+from octsim.reading import parts_of
 from octsim.units import format_length, parse_length
 
 ROOT = Path(__file__).parent.parent
@@ -223,7 +224,7 @@ def test_the_default_config_file_is_the_defaults_and_names_every_key() -> None:
             *(keys(value, f"{prefix}{k}.") for k, value in part.items())
         )
 
-    optional = {"sweep.focus.slope", "sweep.focus.intercept"}
+    optional = {"sweep.focus.slope", "sweep.focus.intercept", "tracing.preset"}
     assert keys(written) == set(known_keys()) - optional
 
 
@@ -239,6 +240,23 @@ def test_the_examples_are_valid_and_raise_no_remark(file: Path) -> None:
 def test_the_schema_file_is_the_models_schema() -> None:
     schema = json.loads((ROOT / "config" / "schema.json").read_text(encoding="utf-8"))
     assert schema == Config.model_json_schema(), "run `make docs`"
+
+
+def test_a_preset_fills_in_what_is_not_given() -> None:
+    draft = load_config({"tracing": {"preset": "draft"}}).tracing
+    assert (draft.scheme, draft.accuracy) == ("paths", PRESETS["draft"]["accuracy"])
+    mixed = load_config({"tracing": {"accuracy": 1e-3}}, {"tracing": {"preset": "draft"}}).tracing
+    assert (mixed.scheme, mixed.accuracy) == ("paths", 1e-3)
+    assert load_config(load_config({"tracing": {"preset": "draft"}}).to_dict()).tracing == draft
+
+
+def test_a_steep_beam_is_remarked_on_under_the_scheme_paths() -> None:
+    steep = {"objective": {"numerical_aperture": 1.3}}
+    assert not any(
+        "paths" in said for said in remarks(Config.model_validate(load_config(steep).to_dict()))
+    )
+    with pytest.warns(OctsimWarning, match="'paths' with a numerical aperture of 1.3"):
+        load_config(steep, {"tracing": {"scheme": "paths"}})
 
 
 def test_parts_of_a_config_change_with_the_keys_they_hold_alone() -> None:

@@ -27,13 +27,19 @@ def stages() -> dict[str, xr.Dataset]:
     made["focus_law"] = octsim.focus_law(config, made["gaussian_fits"])
     made["detections"] = octsim.detections(config, made["focus_law"])
     made["spectra"] = octsim.spectra(config, made["detections"])
+    made["paths"] = octsim.light_paths(config, made["detections"])
     made["fourier"] = octsim.fourier(config, made["spectra"])
     made["phase_slope"] = octsim.phase_slope(config, made["fourier"])
     return made
 
 
 CONTRACT: dict[str, dict[str, tuple[str, ...]]] = {
-    "focus_scan": {"intensity": ("focus",), "rays_detected": ("focus",)},
+    "focus_scan": {
+        "intensity": ("focus",),
+        "rays_detected": ("focus",),
+        "intensity_error": ("focus",),
+        "accuracy_status": ("focus",),
+    },
     "focus_sweep": {"intensity": ("diameter", "fraction"), "focus": ("diameter", "fraction")},
     "gaussian_fits": dict.fromkeys(
         [
@@ -48,11 +54,26 @@ CONTRACT: dict[str, dict[str, tuple[str, ...]]] = {
     ),
     "detections": {
         "amplitude": ("ray",),
+        "rough_amplitude": ("ray",),
+        "path_code": ("ray",),
         "optical_path_length": ("ray",),
         "rays_detected": ("diameter",),
         "segments_traced": ("diameter",),
+        "accuracy_status": ("diameter",),
     },
-    "spectra": {"intensity": ("diameter", "wavenumber"), "focus": ("diameter",)},
+    "spectra": {
+        "intensity": ("diameter", "wavenumber"),
+        "intensity_error": ("diameter",),
+        "accuracy_status": ("diameter",),
+        "focus": ("diameter",),
+    },
+    "paths": {
+        "field_amplitude": ("path", "diameter"),
+        "field_phase": ("path", "diameter"),
+        "mean_optical_path_length": ("path", "diameter"),
+        "share": ("path", "diameter"),
+        "path_rays": ("path", "diameter"),
+    },
     "fourier": {
         "magnitude": ("diameter", "component"),
         "phase": ("diameter", "component"),
@@ -193,3 +214,60 @@ def test_a_law_beyond_the_objective_is_refused(stages: dict[str, xr.Dataset]) ->
     law = stages["focus_law"].assign(intercept=((), 400.0))
     with pytest.raises(octsim.OctsimError, match=r"objective\.focus_distance: 300\.0 um given"):
         octsim.detections(config, law)
+
+
+def test_the_shares_of_all_paths_sum_to_one(stages: dict[str, xr.Dataset]) -> None:
+    shares = stages["paths"]["share"].sum("path")
+    assert np.allclose(shares, 1, atol=1e-12)
+    assert list(stages["paths"]["path"].values[:3]) == ["PT CT CR CT PT", "PT CR PT", "PR"]
+
+
+def test_the_paths_fields_sum_to_the_spectrum(stages: dict[str, xr.Dataset]) -> None:
+    paths, spectra = stages["paths"], stages["spectra"]
+    fields = paths["field_amplitude"] * np.exp(1j * paths["field_phase"].fillna(0))
+    k = spectra["wavenumber"]
+    middle = float(k[0] + k[-1]) / 2
+    expected = spectra["intensity"].interp(wavenumber=middle, method="cubic")
+    assert np.allclose(np.abs(fields.sum("path")) ** 2, expected, rtol=1e-3)
+
+
+def test_the_scheme_paths_goes_through_all_stages() -> None:
+    config = octsim.load_config(
+        {
+            "tracing": {"preset": "draft"},
+            "focus_scan": {"focus": {"num": 4}},
+            "sweep": {"diameters": {"num": 9}, "focus": {"slope": 0.58, "intercept": "69 nm"}},
+        }
+    )
+    detected = octsim.detections(config)
+    spectra = octsim.spectra(config, detected)
+    assert (spectra["accuracy_status"] == 0).all()
+    assert (spectra["intensity_error"] < config.tracing.accuracy).all()
+    assert (detected["segments_traced"] < 5000).all()
+    rays = octsim.load_config(config.to_dict(), {"tracing": {"scheme": "vogel", "rays": 3000}})
+    slope = octsim.phase_slope(
+        rays, octsim.fourier(rays, octsim.spectra(rays, octsim.detections(rays)))
+    )
+    ours = octsim.phase_slope(config, octsim.fourier(config, spectra))
+    assert np.allclose(ours["phase_slope"], slope["phase_slope"], atol=0.2)
+    counted = octsim.focus_scan(config)["rays_detected"]
+    assert np.array_equal(counted, octsim.focus_scan(rays)["rays_detected"])
+
+
+def test_a_diameter_does_not_depend_on_its_sweep() -> None:
+    base = {
+        "tracing": {"preset": "standard"},
+        "sweep": {"focus": {"slope": 0.58, "intercept": "69 nm"}},
+    }
+    many = octsim.load_config(
+        base, {"sweep": {"diameters": {"start": "1 um", "stop": "1.5 um", "num": 6}}}
+    )
+    few = octsim.load_config(
+        base, {"sweep": {"diameters": {"start": "1.3 um", "stop": "1.5 um", "num": 3}}}
+    )
+    all_of, some = (octsim.spectra(c, octsim.detections(c, threads=2)) for c in (many, few))
+    for diameter in (1.4, 1.5):
+        one, other = (s.sel(diameter=diameter, method="nearest") for s in (all_of, some))
+        if float(one["diameter"]) == float(other["diameter"]):
+            assert np.array_equal(one["intensity"], other["intensity"])
+    assert float(all_of["diameter"][-1]) == float(some["diameter"][-1])

@@ -26,13 +26,15 @@ def stages() -> dict[str, xr.Dataset]:
     sweep = octsim.focus_sweep(config)
     fits = octsim.gaussian_fits(config, sweep)
     law = octsim.focus_law(config, fits)
-    spectra = octsim.spectra(config, octsim.detections(config, law))
+    detected = octsim.detections(config, law)
+    spectra = octsim.spectra(config, detected)
     fourier = octsim.fourier(config, spectra)
     return {
         "focus_scan": octsim.focus_scan(config),
         "gaussian_fits": fits,
         "focus_law": law,
         "spectra": spectra,
+        "paths": octsim.light_paths(config, detected),
         "fourier": fourier,
         "phase_slope": octsim.phase_slope(config, fourier),
     }
@@ -66,6 +68,12 @@ LABELS = {
     "figure_10": {"Diameter of the cylinder (µm)", "Magnitude (sum over the samples)"},
     "figure_11": {"Diameter of the cylinder (µm)", "Phase, unwrapped (rad)"},
     "figure_12": {"Diameter of the cylinder (µm)", "Phase slope (mrad/nm)"},
+    "paths": {
+        "Diameter of the cylinder (µm)",
+        "Field amplitude",
+        "Share of the intensity",
+        "Mean optical path (µm)",
+    },
 }
 
 

@@ -25,10 +25,10 @@ TINY: dict[str, Any] = {
 }
 GIVEN = {"sweep": {"focus": {"slope": 0.58, "intercept": "69 nm"}}}
 STAGES = [
-    "focus_scan", "focus_sweep", "gaussian_fits", "focus_law", "detections", "spectra", "fourier",
-    "phase_slope",
+    "focus_scan", "focus_sweep", "gaussian_fits", "focus_law", "detections", "spectra", "paths",
+    "fourier", "phase_slope",
 ]  # fmt: skip
-FIGURES = [f"figure_{number}" for number in (1, 6, 7, 8, 9, 10, 11, 12)]
+FIGURES = [*(f"figure_{number}" for number in (1, 6, 7, 8, 9, 10, 11, 12)), "paths"]
 
 
 class Checkout:
@@ -141,7 +141,8 @@ EDITS: dict[str, tuple[Any, set[str], set[str]]] = {
     "objective.focus_distance": ("310 um", EVERYTHING, EVERYTHING),
     "objective.magnification": (21, EVERYTHING, EVERYTHING),
     "detector.core_diameter": ("4 um", EVERYTHING, EVERYTHING),
-    "tracing.scheme": (None, set(), set()),  # there is but one
+    "tracing.scheme": ("paths", EVERYTHING, EVERYTHING),
+    "tracing.accuracy": (1e-3, set(), set()),  # of the scheme paths
     "tracing.rays": (201, EVERYTHING, EVERYTHING),
     "tracing.max_intersections": (10, EVERYTHING, EVERYTHING),
     "tracing.min_amplitude": (1e-4, EVERYTHING, EVERYTHING),

@@ -56,5 +56,5 @@ def job(snakemake: Any) -> Iterator[Config]:
 
 def count_points(snakemake: Any, dataset: xr.Dataset) -> None:
     """Leave the number of traced points, each a diameter at a focus, in the job's points log."""
-    counts = {"points_traced": dataset["rays_detected"].size, "points_from_cache": 0}
+    counts = {"points_traced": dataset["focus"].size, "points_from_cache": 0}
     Path(snakemake.log.points).write_text(json.dumps(counts) + "\n", encoding="utf-8")
