@@ -3,6 +3,7 @@
 #   config ─┬─ focus_scan
 #           ├─ focus_sweep ─ focus_law ─┐   (where sweep.focus is law)
 #           └──────────────────── detections ─ spectra ─ phase_slope
+#                                              (and paths)
 #
 # Each rule names the config keys that it reads and the script whose code it runs: nothing else
 # makes it run again. Outputs are marked `update`: a script replaces them whole, at its end, so a
@@ -15,8 +16,9 @@ from filelock import FileLock, Timeout
 from octsim.config import Config
 from octsim.errors import OctsimError
 from octsim.files import require_folder
-from octsim.loading import load_config, parts_of, remarks
+from octsim.loading import load_config, remarks
 from octsim.provenance import source_digest
+from octsim.reading import keys_read, parts_of
 
 try:
     # the files themselves too, as snakemake's own reading lets a key stand twice
@@ -30,7 +32,6 @@ if run.run == Config().run and run != Config():
 for remark in remarks(run):
     print(f"octsim: warning: {remark}", file=sys.stderr)
 
-INSTRUMENT = ("scene", "objective", "detector", "tracing")
 os.environ["OCTSIM_RUN"] = str(os.getpid())  # a job ends with the run that started it
 STAGES = (
     "focus_scan",
@@ -39,10 +40,11 @@ STAGES = (
     "focus_law",
     "detections",
     "spectra",
+    "paths",
     "fourier",
     "phase_slope",
 )
-FIGURES = (1, 6, 7, 8, 9, 10, 11, 12)
+FIGURES = (*(f"figure_{number}" for number in (1, 6, 7, 8, 9, 10, 11, 12)), "paths")
 LOCK = FileLock(f"results/{run.run}/.lock")  # held from the start of a run to its end
 SCRIPTS = Path(workflow.basedir) / "workflow" / "scripts"
 BENCHMARKS = Path(workflow.basedir) / "benchmarks"
@@ -58,6 +60,11 @@ def made_from(script: str, *keys: str) -> dict[str, object]:
     One value for the whole, as snakemake compares a rule's params as a set, without their names.
     """
     return {"code": source_digest(SCRIPTS / f"{script}.py"), **parts_of(run, *keys)}
+
+
+def of_stage(stage: str) -> dict[str, object]:
+    """Give what a stage's results follow from."""
+    return made_from(stage, *keys_read(stage, run))
 
 
 onstart:
@@ -86,9 +93,9 @@ rule all:
     input:
         expand("results/{run}/{stage}.nc", run=run.run, stage=STAGES),
         expand(
-            "results/{run}/figures/figure_{number}.{form}",
+            "results/{run}/figures/{figure}.{form}",
             run=run.run,
-            number=FIGURES,
+            figure=FIGURES,
             form=("png", "svg"),
         ),
 
@@ -102,7 +109,7 @@ rule focus_scan:
     benchmark:
         "results/{run}/benchmarks/focus_scan.tsv"
     params:
-        made_from=made_from("focus_scan", *INSTRUMENT, "spectrum", "focus_scan"),
+        made_from=of_stage("focus_scan"),
     message:
         "Scan the focus for one diameter"
     script:
@@ -118,7 +125,7 @@ rule focus_sweep:
     benchmark:
         "results/{run}/benchmarks/focus_sweep.tsv"
     params:
-        made_from=made_from("focus_sweep", *INSTRUMENT, "spectrum", "focus_law"),
+        made_from=of_stage("focus_sweep"),
     message:
         "Measure the intensity over the focus for the diameters of the focus law"
     script:
@@ -136,7 +143,7 @@ rule focus_law:
     benchmark:
         "results/{run}/benchmarks/focus_law.tsv"
     params:
-        made_from=made_from("focus_law"),
+        made_from=of_stage("focus_law"),
     message:
         "Fit Gaussians over the focus, and the focus law through their centres"
     script:
@@ -155,7 +162,7 @@ rule detections:
     benchmark:
         "results/{run}/benchmarks/detections.tsv"
     params:
-        made_from=made_from("detections", *INSTRUMENT, "sweep"),
+        made_from=of_stage("detections"),
     message:
         "Trace the sweep over diameters"
     script:
@@ -166,13 +173,14 @@ rule spectra:
     input:
         detections="results/{run}/detections.nc",
     output:
-        update("results/{run}/spectra.nc"),
+        spectra=update("results/{run}/spectra.nc"),
+        paths=update("results/{run}/paths.nc"),
     log:
         "results/{run}/logs/spectra.log",
     benchmark:
         "results/{run}/benchmarks/spectra.tsv"
     params:
-        made_from=made_from("spectra", "spectrum"),
+        made_from=of_stage("spectra"),
     message:
         "Sum the detected rays to spectra"
     script:
@@ -190,7 +198,7 @@ rule phase_slope:
     benchmark:
         "results/{run}/benchmarks/phase_slope.tsv"
     params:
-        made_from=made_from("phase_slope", "processing", "scene.refractive_index.neuron"),
+        made_from=of_stage("phase_slope"),
     message:
         "Transform the spectra and differentiate their phase over the diameter"
     script:
@@ -203,13 +211,14 @@ rule figures:
         gaussian_fits="results/{run}/gaussian_fits.nc",
         focus_law="results/{run}/focus_law.nc",
         spectra="results/{run}/spectra.nc",
+        paths="results/{run}/paths.nc",
         fourier="results/{run}/fourier.nc",
         phase_slope="results/{run}/phase_slope.nc",
     output:
         update(
             expand(
-                "results/{{run}}/figures/figure_{number}.{form}",
-                number=FIGURES,
+                "results/{{run}}/figures/{figure}.{form}",
+                figure=FIGURES,
                 form=("png", "svg"),
             )
         ),
@@ -239,8 +248,27 @@ rule stability:
     params:
         # when it is asked for: the benchmarks need not be beside a workflow that is copied
         benchmark=lambda _: source_digest(BENCHMARKS / "stability.py"),
-        made_from=made_from("stability", *INSTRUMENT, "spectrum", "sweep"),
+        made_from=of_stage("stability"),
     message:
         "Measure rounding at the extremes against 50 digits"
     script:
         "workflow/scripts/stability.py"
+
+
+rule tradeoff:
+    output:
+        tradeoff=update(expand("results/{run}/tradeoff.nc", run=run.run)),
+        figures=update(
+            expand("results/{run}/figures/tradeoff.{form}", run=run.run, form=("png", "svg"))
+        ),
+    log:
+        f"results/{run.run}/logs/tradeoff.log",
+    benchmark:
+        f"results/{run.run}/benchmarks/tradeoff.tsv"
+    threads: workflow.cores
+    params:
+        made_from=of_stage("tradeoff"),
+    message:
+        "Measure error and cost, one setting after the other"
+    script:
+        "workflow/scripts/tradeoff.py"

@@ -14,6 +14,7 @@ from pydantic import BaseModel
 import octsim
 from octsim.config import Config
 from octsim.detection import detector_radius
+from octsim.settings import CONVERGED_SAMPLES, FINER, reference
 
 DOCS = Path(__file__).parent
 RESULTS = DOCS.parent / "results" / "thesis"
@@ -235,6 +236,131 @@ sweep divide that by nanometres: {slope:.2g} mrad/nm of phase slope in the thesi
 """
 
 
+def tradeoff() -> str:
+    """Write the page of what accuracy costs."""
+    trade = xr.load_dataset(RESULTS / "tradeoff.nc")
+
+    def cells(one: xr.Dataset) -> list[str]:
+        texts = [
+            f"{scale * one[name].item():{form}}" if np.isfinite(one[name]) else "–"
+            for name, scale, form in TRADE_COLUMNS.values()
+        ]
+        # of some diameters only: their time is scaled to the sweep
+        return [*texts, "yes" if one["frontier"] else ""]
+
+    each = [trade.isel(setting=i) for i in range(trade.sizes["setting"])]
+    named = [
+        [
+            f"{'**this run**' if one['default'] else str(one['preset'].item())}",
+            f"`{one['setting'].item()}`",
+            *cells(one),
+        ]
+        for one in each
+        if one["default"] or one["preset"].item()
+    ]
+    head = [*TRADE_COLUMNS, "efficient"]
+    every = [[f"`{one['setting'].item()}`", *cells(one)] for one in each]
+    targets = [
+        [
+            f"{float(one['target_error']):.2g}",
+            str(one["target"].item()) if number == 0 else "",
+            f"{float(one['rays_segments']):.3g}",
+            "measured" if one["rays_measured"] else "by the power law",
+            f"{float(one['paths_segments']):.0f}",
+            f"{float(one['segments_ratio']):.0f}",
+            f"{float(one['paths_segments_between']):.0f}",
+            f"{float(one['segments_ratio_between']):.0f}",
+        ]
+        for number, one in enumerate(trade.isel(target=i) for i in range(trade.sizes["target"]))
+    ]
+    dropped = trade.isel(setting=trade["factor"] == "tracing.min_amplitude")
+    check = trade.isel(setting=trade["factor"] == "reference")
+    diameters = int(trade["diameters_traced"].where(trade["default"] == 1).max())
+    part = trade["diameters_traced"].where(trade["factor"] == "tracing.rays")
+    return TRADE_TEMPLATE.format(
+        named=table(["", "setting", *head], named),
+        targets=table(TARGET_HEAD, targets),
+        every=table(["setting", *head], every),
+        dropped=table(
+            ["`min_amplitude`", "change of I(k)", "segments a diameter"],
+            [
+                [f"{float(v):g}", f"{float(c):.1e}", f"{float(s):.3g}"]
+                for v, c, s in zip(
+                    dropped["value"], dropped["intensity_change"],
+                    dropped["segments_per_diameter"], strict=True,
+                )
+            ],
+        ),
+        exponent=f"{float(trade['rays_law_exponent']):.2f}".replace("-", "−"),
+        check=f"{float(check['worst_intensity_error'].max()):.1e}",
+        diameters=diameters,
+        part=int(part.min()),
+        accuracy=reference(Config()).tracing.accuracy,
+        most=reference(Config()).tracing.max_intersections,
+        samples=CONVERGED_SAMPLES,
+        finer=FINER,
+    )  # fmt: skip
+
+
+TRADE_COLUMNS = {
+    # heading: variable, scale, format
+    "error of I(k), worst": ("worst_intensity_error", 1, ".1e"),
+    "median": ("median_intensity_error", 1, ".1e"),
+    "above the accuracy": ("beyond_accuracy", 1, "d"),
+    "of the phase slope, rms (mrad/nm)": ("phase_slope_rms_error", 1, ".1e"),
+    "largest": ("phase_slope_largest_error", 1, ".1e"),
+    "of the law's focus (nm)": ("focus_error", 1e3, ".1e"),
+    "segments a diameter": ("segments_per_diameter", 1, ".3g"),
+    "CPU (s)": ("cpu_seconds", 1, ".3g"),
+    "memory (MiB)": ("peak_memory", 1, ".1f"),
+}
+TARGET_HEAD = [
+    "error", "", "rays: segments", "", "paths: segments, cheapest within it", "times fewer",
+    "paths: between points", "times fewer",
+]  # fmt: skip
+TRADE_TEMPLATE = """# What accuracy costs
+
+Written by `make docs` from `results/thesis/tradeoff.nc`; do not edit. `make docs` runs
+`snakemake tradeoff`, some minutes on two cores. The same target measures a config of yours.
+
+![Error over cost](figures/tradeoff.png)
+
+One key of the config is varied at a time: `rays` and `min_amplitude` with the scheme `vogel`, all
+else with `paths`, where the accuracy is 1e-6 unless it is what is varied. Errors are those from a
+reference: `paths` at {accuracy:g} and {most} intersections, of the same diameters, foci and
+wavenumbers. With 1e-8 and 30 intersections it moves by {check}, at {part} of the diameters. The
+error of I(k) is max |ΔI| / max I over k, the worst and the median over the diameters, and at how
+many it is above the accuracy that was asked for (fewer intersections than the light takes are no
+matter of the accuracy). The slope of fewer or more `samples` is compared with that of {samples},
+the slope of fewer or more diameters with that of {finer} times the run's steps; the law's focus
+with the reference's, at its largest difference over the sweep. A dash stands for what was not
+measured, or for a law without a peak.
+
+Costs are those of the sweep's {diameters} diameters on one thread: segments traced a diameter (for
+`paths` those that look for the paths too), processor time to trace and sum, and by how much the
+process's memory grew. Where there is no error of the slope, {part} diameters were traced and the
+time is scaled to the sweep. *Efficient* is what no other setting of `tracing` beats in both
+segments and worst error. Time and memory are this machine's, and differ from run to run.
+
+## The presets, and the run itself
+
+{named}
+`tracing: {{preset: standard}}` takes one.
+
+## Light paths beside counted rays
+
+{targets}
+The error of counted rays falls as segments^({exponent}). *Cheapest within it* is a setting that was
+measured; *between points* interpolates along the efficient ones.
+
+## Every setting
+
+{every}
+What `min_amplitude` changes by itself, largest change of I(k) over its maximum:
+
+{dropped}"""
+
+
 if __name__ == "__main__":
     schema = json.dumps(Config.model_json_schema(), indent=2) + "\n"
     (DOCS.parent / "config" / "schema.json").write_text(schema, encoding="utf-8")
@@ -242,5 +368,6 @@ if __name__ == "__main__":
     (DOCS / "results.md").write_text(results(), encoding="utf-8")
     (DOCS / "figures").mkdir(exist_ok=True)
     (DOCS / "stability.md").write_text(stability(), encoding="utf-8")
-    for name in ("figure_12.png", "stability.png"):
+    (DOCS / "tradeoff.md").write_text(tradeoff(), encoding="utf-8")
+    for name in ("figure_12.png", "stability.png", "tradeoff.png"):
         shutil.copy(RESULTS / "figures" / name, DOCS / "figures" / name)

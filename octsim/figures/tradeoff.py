@@ -1,0 +1,110 @@
+"""What accuracy costs: error over cost, the efficient frontier, the presets and the run itself."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from octsim.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILION, label, title
+
+_FACTORS: Mapping[str, tuple[str, str, str]] = {
+    # key of the config: colour, marker, what the legend says
+    "tracing.rays": (ORANGE, "s", "vogel: rays"),
+    "tracing.min_amplitude": (PURPLE, "v", "vogel: min_amplitude"),
+    "tracing.accuracy": (BLUE, "o", "paths: accuracy"),
+    "tracing.max_intersections": (GREEN, "^", "paths: max_intersections"),
+    "run": (BLACK, "D", "the run's own"),
+}
+_PANELS = (
+    # cost, error, efficient, axis labels
+    (
+        "segments_per_diameter", "worst_intensity_error", "frontier",
+        "segments traced a diameter", "error of I(k) over its maximum, worst",
+    ),
+    (
+        "cpu_seconds", "phase_slope_rms_error", "phase_slope_frontier",
+        "processor time of the sweep, one thread", "error of the phase slope, rms",
+    ),
+)  # fmt: skip
+
+
+def tradeoff_figure(measured: xr.Dataset) -> Figure:
+    """Draw the error of the intensity over segments, and that of the phase slope over time."""
+    figure = Figure(figsize=(10.5, 5.2))
+    panels = figure.subplots(1, 2)
+    for axes, (cost, error, efficient, *names) in zip(panels, _PANELS, strict=True):
+        _draw(axes, measured, cost, error)
+        _frontier(axes, measured, cost, error, efficient)
+        _name(axes, measured, cost, error)
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        axes.set_xlabel(label(measured[cost], names[0]))
+        axes.set_ylabel(label(measured[error], names[1]))
+        axes.margins(0.09)
+    _law(panels[0], measured)
+    figure.suptitle(title(measured, "What accuracy costs"), fontsize=11)
+    handles, names = panels[0].get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside lower center", ncols=4, fontsize=8)
+    return figure
+
+
+def _draw(axes: Axes, measured: xr.Dataset, cost: str, error: str) -> None:
+    """Draw the points of each factor; those of part of the sweep are hollow."""
+    whole = measured["diameters_traced"] == measured["diameters_traced"].where(
+        measured["default"] == 1
+    ).max()  # fmt: skip
+    for factor, (colour, marker, text) in _FACTORS.items():
+        of_factor = (measured["factor"] == factor) & (measured[error] > 0)
+        for part, face in ((whole, colour), (~whole, "white")):
+            shown = measured.isel(setting=of_factor & part)
+            if shown.sizes["setting"]:
+                axes.plot(
+                    shown[cost], shown[error], linestyle="none", marker=marker, markersize=5,
+                    color=colour, markerfacecolor=face,
+                    label=text if part is whole else f"{text}, some diameters", zorder=3,
+                )  # fmt: skip
+
+
+def _frontier(axes: Axes, measured: xr.Dataset, cost: str, error: str, efficient: str) -> None:
+    """Draw the line through the points that no other one beats."""
+    best = measured.isel(setting=measured[efficient] == 1).sortby(cost)
+    axes.plot(
+        best[cost], best[error], color="0.35", linewidth=1.2, drawstyle="steps-post",
+        label="efficient frontier", zorder=2,
+    )  # fmt: skip
+
+
+def _law(axes: Axes, measured: xr.Dataset) -> None:
+    """Draw the power law of counted rays."""
+    segments = measured["segments_per_diameter"].where(measured["factor"] == "tracing.rays")
+    ends = np.array([float(segments.min()), float(segments.max())])
+    exponent = float(measured["rays_law_exponent"])
+    if np.isfinite(exponent):
+        axes.plot(
+            ends, float(measured["rays_law_factor"]) * ends**exponent, color=ORANGE,
+            linewidth=1, linestyle="--", zorder=1,
+            label=f"power law, error ∝ segments$^{{{exponent:.2f}}}$",
+        )  # fmt: skip
+
+
+def _name(axes: Axes, measured: xr.Dataset, cost: str, error: str) -> None:
+    """Ring and name the presets and the run's own setting."""
+    for number in range(measured.sizes["setting"]):
+        one = measured.isel(setting=number)
+        own, preset = bool(one["default"] == 1), str(one["preset"].item())
+        if not (own or preset) or not float(one[error]) > 0:
+            continue
+        place = float(one[cost]), float(one[error])
+        colour = VERMILION if own else BLACK
+        axes.plot(
+            *place, linestyle="none", marker="o", markersize=11, markerfacecolor="none",
+            color=colour, zorder=4,
+        )  # fmt: skip
+        text = f"{preset}, this run" if own and preset else preset or "this run"
+        # presets are on the frontier: what is to their left is empty
+        axes.annotate(
+            text, place, xytext=(9, 5) if own else (-9, -9), textcoords="offset points",
+            ha="left" if own else "right", fontsize=9, color=colour, fontweight="bold", zorder=5,
+        )  # fmt: skip
