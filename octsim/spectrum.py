@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.compiled import compiled
@@ -119,6 +120,33 @@ def sum_rays(
     return spectrum, relative_error(largest, float(np.hypot(real, imaginary).max()))
 
 
+@register_jitable
+def _add_rays(
+    begin: int,
+    end: int,
+    amplitude: NDArray[np.float64],
+    rough_amplitude: NDArray[np.float64],
+    optical_path_length: NDArray[np.float64],
+    first: float,
+    step: float,
+    real: NDArray[np.float64],
+    imaginary: NDArray[np.float64],
+) -> float:
+    """Add some rays' fields at each wavenumber; give how far the rougher rule's is from them."""
+    error = 0.0
+    for k in range(real.size):
+        off, off_i = 0.0, 0.0
+        for j in range(begin, end):
+            phase = (first + k * step) * optical_path_length[j]
+            cos, sin = math.cos(phase), math.sin(phase)
+            real[k] += amplitude[j] * cos
+            imaginary[k] += amplitude[j] * sin
+            off += (amplitude[j] - rough_amplitude[j]) * cos
+            off_i += (amplitude[j] - rough_amplitude[j]) * sin
+        error = max(error, math.hypot(off, off_i))
+    return error
+
+
 @compiled(fastmath={"reassoc", "contract"})
 def _path_fields(
     first_ray: NDArray[np.int64],
@@ -150,6 +178,14 @@ def _path_fields(
         while n < _MOST_NODES and left_out > tolerance:
             n += 1
             left_out *= 0.5 * half * spread / n
+        if left_out > tolerance and n == _MOST_NODES:
+            # paths so far apart that no few nodes hold their field: ray by ray
+            error += _add_rays(
+                begin, end, amplitude, rough_amplitude, optical_path_length, first, step, real,
+                imaginary,
+            )  # fmt: skip
+            continue
+        off_field = 0.0
         for i in range(n):
             k = middle + half * math.cos(math.pi * (i + 0.5) / n)
             total, total_i, off, off_i = 0.0, 0.0, 0.0, 0.0
@@ -161,8 +197,8 @@ def _path_fields(
                 off += less * cos
                 off_i += less * sin
             values[0, i], values[1, i] = total, total_i
-            left_out = max(left_out, math.hypot(off, off_i))
-        error += left_out
+            off_field = max(off_field, math.hypot(off, off_i))
+        error += left_out + off_field
         for a in range(n):
             scale = (1.0 if a == 0 else 2.0) / n
             coefficients[0, a], coefficients[1, a] = 0.0, 0.0

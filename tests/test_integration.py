@@ -164,6 +164,15 @@ def test_interpolating_paths_over_k_is_summing_their_rays() -> None:
         assert np.abs(spectrum - summed).max() < 0.05 * accuracy * summed.max() + 1e-14
 
 
+def test_rays_of_one_path_may_lie_far_apart() -> None:
+    amplitude, lengths = np.array([1e-3, 2e-3, -1e-3]), np.array([0.5, 40.0, 190.0])
+    spectrum, estimate = sum_paths(
+        np.array([4, 4, 4]), amplitude, 0.99 * amplitude, lengths, 0.0, K, 1e-6
+    )
+    assert np.allclose(spectrum, intensity(amplitude, lengths, K), atol=1e-14)
+    assert estimate == pytest.approx(0.02, rel=0.02)
+
+
 def test_the_error_of_a_spiral_of_rays_is_estimated_too() -> None:
     ratios = []
     for diameter in np.linspace(1, 2, 5):
