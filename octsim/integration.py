@@ -7,6 +7,7 @@ do not fit is refined (`octsim.refinement`), until the whole is within the accur
 """
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.agenda import promising
+from octsim.beam import Beam, aim
 from octsim.chebyshev import HIGHEST, LOOK, tables
 from octsim.compiled import compiled
 from octsim.cubature import rules
@@ -27,7 +29,7 @@ from octsim.refinement import SPARE, Allowed, Tally, Work, settle
 from octsim.scene import Cylinder, Scene
 from octsim.survey import COLUMNS, recall, share_of_faint, survey_aperture
 from octsim.tiles import Tile
-from octsim.tracing import check_reach
+from octsim.tracing import check_reach, trace
 from octsim.workplace import Found, Room, Survey, Task, room_for_nodes, room_for_point
 
 BUDGET = 1_000_000
@@ -187,6 +189,23 @@ def symmetric_in_x(scene: Scene) -> bool:
     return all(s.x == 0 for s in scene.surfaces if isinstance(s, Cylinder))
 
 
+def light_misses(scene: Scene, detector: Detector, focus: float) -> bool:
+    """Tell whether the outermost light, to either side in x, meets planes alone."""
+    if not any(isinstance(surface, Cylinder) for surface in scene.surfaces):
+        return False
+    radius = np.array([-detector.objective_radius, detector.objective_radius])
+    vx, vy, vz = aim(radius, np.zeros(2), detector.focus_distance)
+    planes = replace(
+        scene, surfaces=tuple(s for s in scene.surfaces if not isinstance(s, Cylinder))
+    )
+    for side in (0, 1):
+        beam = Beam(vx[[side]], vy[[side]], vz[[side]], np.ones(1), np.zeros(1, np.int64))
+        met = [trace(which, beam, detector, focus, 3).segments for which in (scene, planes)]
+        if met[0] == met[1]:
+            return True
+    return False
+
+
 def integrate(
     scene: Scene,
     detector: Detector,
@@ -247,7 +266,9 @@ def integrate(
         optical_path_length,
         missing,
         segments,
-        AccuracyStatus(status),
+        AccuracyStatus.AT_AN_EDGE
+        if status == AccuracyStatus.REACHED and light_misses(scene, detector, focus)
+        else AccuracyStatus(status),
     )
 
 

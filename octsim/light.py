@@ -18,6 +18,9 @@ class AccuracyStatus(IntEnum):
     """The estimate of the error stays above what was asked for."""
     NOT_CONTROLLED = 3
     """The scheme has a number of rays, and no accuracy to reach."""
+    AT_AN_EDGE = 4
+    """Reached by the estimate, but part of the light misses a cylinder, and what returns from near
+    its edge can be missing from both."""
 
 
 class Light(NamedTuple):

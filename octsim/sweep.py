@@ -173,6 +173,7 @@ def unreached(measured: xr.Dataset) -> str | None:
         return None
     worst = float(measured["intensity_error"].values[missed].max())
     return (
-        f"the accuracy is not reached at {missed.sum()} of {missed.size} points (accuracy_status "
-        f"says where and why; estimated error up to {worst:.2g}): ask for less by tracing.accuracy"
+        f"the accuracy is not, or not surely, reached at {missed.sum()} of {missed.size} points "
+        f"(accuracy_status says where and why; estimated error up to {worst:.2g}): compare with "
+        "tracing.scheme vogel, or ask for less by tracing.accuracy"
     )
