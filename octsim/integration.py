@@ -28,7 +28,7 @@ from octsim.paths import follow, steps_of
 from octsim.refinement import SPARE, Allowed, Tally, Work, settle
 from octsim.scene import Cylinder, Scene
 from octsim.survey import COLUMNS, recall, share_of_faint, survey_aperture
-from octsim.tiles import Tile
+from octsim.tiles import Tile, images
 from octsim.tracing import check_reach, trace
 from octsim.workplace import Found, Room, Survey, Task, room_for_nodes, room_for_point
 
@@ -153,7 +153,7 @@ def _integrate(
     accuracy = _MARGIN * accuracy
     faint, segments, scale, missing, count = 1e-3 * accuracy, 0, 0.0, 0.0, 0
     relative, status = _ONE_PATH * accuracy, AccuracyStatus.NOT_REACHED.value
-    multiplicity = (4.0 if task.symmetric else 2.0) / math.pi
+    multiplicity = images(task.symmetric)
     for _ in range(_ATTEMPTS):
         wide, close, lost, traced = survey_aperture(
             task, survey_orders, max_intersections, faint, room
@@ -198,7 +198,7 @@ def light_misses(scene: Scene, detector: Detector, focus: float) -> bool:
     planes = replace(
         scene, surfaces=tuple(s for s in scene.surfaces if not isinstance(s, Cylinder))
     )
-    for side in (0, 1):
+    for side in (1,) if symmetric_in_x(scene) else (0, 1):
         beam = Beam(vx[[side]], vy[[side]], vz[[side]], np.ones(1), np.zeros(1, np.int64))
         met = [trace(which, beam, detector, focus, 3).segments for which in (scene, planes)]
         if met[0] == met[1]:

@@ -157,6 +157,19 @@ def _falsi(low: float, at_low: float, high: float, at_high: float) -> float:
     return x if min(low, high) < x < max(low, high) else 0.5 * (low + high)
 
 
+@register_jitable(forceinline=True)
+def _narrowed(
+    low: float, at_low: float, high: float, at_high: float, side: int, x: float, here: float
+) -> tuple[float, float, float, float, int]:
+    """Put a place between two in the stead of that of its sign.
+
+    By the Illinois rule: a value that stays twice counts half. `side` tells which came last.
+    """
+    if (here > 0) == (at_high > 0):
+        return low, (0.5 * at_low if side == 1 else at_low), x, here, 1
+    return x, here, high, (0.5 * at_high if side == -1 else at_high), -1
+
+
 @register_jitable
 def edge(cut: Cut, xi: float, line: Line, low: float, high: float) -> float:
     """Find where the margin along a line changes its sign (Illinois)."""
@@ -167,14 +180,7 @@ def edge(cut: Cut, xi: float, line: Line, low: float, high: float) -> float:
         here = margin(cut, xi, line, y)
         if abs(here) < _ROUGHLY or abs(high - low) < _ROUGHLY * (abs(low) + abs(high)):
             break
-        if (here > 0) == (at_high > 0):
-            high, at_high = y, here
-            at_low = 0.5 * at_low if side == 1 else at_low
-            side = 1
-        else:
-            low, at_low = y, here
-            at_high = 0.5 * at_high if side == -1 else at_high
-            side = -1
+        low, at_low, high, at_high, side = _narrowed(low, at_low, high, at_high, side, y, here)
     return y
 
 
@@ -192,14 +198,7 @@ def end_of(cut: Cut, line: Line, y: float, which: int, low: float, high: float) 
         here = margins(cut, xi, line, y)[which]
         if abs(here) < _CLOSE or abs(high - low) < _CLOSE * (abs(low) + abs(high)):
             break
-        if (here > 0) == (at_high > 0):
-            high, at_high = xi, here
-            at_low = 0.5 * at_low if side == 1 else at_low
-            side = 1
-        else:
-            low, at_low = xi, here
-            at_high = 0.5 * at_high if side == -1 else at_high
-            side = -1
+        low, at_low, high, at_high, side = _narrowed(low, at_low, high, at_high, side, xi, here)
     return xi
 
 

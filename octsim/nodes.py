@@ -10,7 +10,7 @@ from octsim.beam import Beam, aim
 from octsim.chebyshev import FIT, trailing, transform
 from octsim.cubature import moments
 from octsim.lines import LESS_S, LESS_V, Cut
-from octsim.tiles import Tile, across
+from octsim.tiles import Tile, across, images
 from octsim.workplace import Found, Room, Task
 
 CRUDE = 0.25
@@ -60,7 +60,7 @@ def map_tile(task: Task, tile: Tile, n: int, m: int, stride: int, kind: int, roo
 
 @register_jitable
 def weigh(task: Task, tile: Tile, n: int, m: int, tolerance: float, room: Room) -> float:
-    """Find the weight of each node of a tile, and by a rule of one order less; give their sum."""
+    """Find the weight of each node of a tile, and by a rougher rule; give their sum."""
     cut = Cut(room.returns, n, m, tile, task.symmetric, task.detector.radius)
     total = moments(cut, tolerance, task.rules, room.line, room.exact, room.rough)
     _to_nodes(task, room.exact, n, m, n, m, room.between, room.weight)
@@ -85,7 +85,7 @@ def _to_nodes(
             for b in range(q):
                 total += integrals[a, b] * along_v[b, j]
             between[a, j] = total
-    multiplicity = (4.0 if task.symmetric else 2.0) / math.pi
+    multiplicity = images(task.symmetric)
     for i in range(n):
         for j in range(m):
             total = 0.0
@@ -104,7 +104,7 @@ def weigh_crudely(
     """
     bundle, radius = room.bundle, task.detector.radius
     along_s, along_v = task.nodes_s[kind, n], task.nodes_v[kind, m]
-    multiplicity, size = (4.0 if task.symmetric else 2.0) / math.pi, 0.0
+    multiplicity, size = images(task.symmetric), 0.0
     s_width, v_width = tile.s_max - tile.s_min, tile.v_max - tile.v_min
     for i in range(n):
         left = across(tile.s_min + s_width * along_s[max(i - 1, 0)], task.symmetric)

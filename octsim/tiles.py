@@ -40,9 +40,15 @@ def area(tile: Tile, symmetric: bool) -> float:
 
 
 @register_jitable(forceinline=True)
+def images(symmetric: bool) -> float:
+    """Give a part of the aperture and its mirror images, over the disk's area π."""
+    return (4.0 if symmetric else 2.0) / math.pi
+
+
+@register_jitable(forceinline=True)
 def fraction(tile: Tile, symmetric: bool) -> float:
     """Fraction of the aperture that a tile and its mirror images make up."""
-    return (4.0 if symmetric else 2.0) / math.pi * area(tile, symmetric)
+    return images(symmetric) * area(tile, symmetric)
 
 
 @register_jitable
