@@ -32,6 +32,10 @@ PositiveNumber = Annotated[Number, Field(ge=1e-6, le=1e6)]
 Index = Annotated[Number, Field(ge=1, le=10)]
 
 
+DECIMALS = 12
+"""Of a micrometre, to which evenly spaced values are rounded: an attometre."""
+
+
 class Section(BaseModel):
     """A part of the config: frozen, with no room for keys that it does not know."""
 
@@ -46,8 +50,11 @@ class Range(Section):
     num: Annotated[int, Field(ge=2, le=1_000_000)]
 
     def values(self) -> NDArray[np.float64]:
-        """Give the values, shape (num,), in µm where they are lengths."""
-        return np.linspace(self.start, self.stop, self.num)
+        """Give the values, shape (num,), in µm where they are lengths.
+
+        They are rounded far below a femtometre: a value that two ranges share has the same bits.
+        """
+        return np.round(np.linspace(self.start, self.stop, self.num), DECIMALS)
 
 
 class FocusRange(Range):
@@ -227,6 +234,62 @@ class Processing(Section):
     window: Window = _key("hamming", "a symmetric window of scipy.signal.windows")
 
 
+class Grid(Section):
+    """Keys that are varied: each dotted key has a list of values or a range of them.
+
+    A checked config holds them as lists, in the config's own units.
+    """
+
+    model_config = ConfigDict(
+        extra="allow",
+        json_schema_extra={
+            "additionalProperties": {
+                "description": "a dotted key of the config, and the values that it takes",
+                "anyOf": [
+                    {"type": "array", "minItems": 1},
+                    {
+                        "type": "object",
+                        "properties": {
+                            "start": {"type": ["number", "string"]},
+                            "stop": {"type": ["number", "string"]},
+                            "num": {"type": "integer", "minimum": 2},
+                        },
+                        "required": ["start", "stop", "num"],
+                        "additionalProperties": False,
+                    },
+                ],
+            }
+        },
+    )
+
+    combine: Literal["product", "zip"] = _key(
+        "product", "every value with every other, or first with first and so on"
+    )
+
+    @property
+    def varied(self) -> Mapping[str, Any]:
+        """Values of each varied key."""
+        return self.model_extra or {}
+
+
+class Cache(Section):
+    """Where traced points are kept; no result depends on it."""
+
+    file: Annotated[str, Field(min_length=1)] = _key(
+        ".octsim/points.sqlite", "of this folder, or one that several share"
+    )
+    gigabytes: Annotated[Number, Field(ge=0, le=1e6)] = _key(
+        4.0, "its largest size; 0 keeps and reads nothing"
+    )
+
+
+class Budget(Section):
+    """What a run may take by its estimate; raise it to confirm a larger one."""
+
+    cpu_hours: PositiveNumber = _key(1.0, "processor time")
+    disk_gigabytes: PositiveNumber = _key(20.0, "datasets of the run")
+
+
 class Config(Section):
     """A whole run. Every value has the thesis's as its default."""
 
@@ -242,6 +305,9 @@ class Config(Section):
     focus_law: FocusLawConfig = FocusLawConfig()
     sweep: Sweep = Sweep()
     processing: Processing = Processing()
+    grid: Grid = Grid()
+    cache: Cache = Cache()
+    budget: Budget = Budget()
 
     def to_dict(self) -> dict[str, Any]:
         """Give the config as plain data that `load_config` reads back to the same bits."""
