@@ -21,7 +21,7 @@ from octsim.cachetables import (
     Rate,
     Row,
     add_to_rate,
-    delete,
+    drop,
     empty,
     find,
     keep,
@@ -79,19 +79,15 @@ class PointCache:
         with self._lock:
             try:
                 connection = self._open()
-                found = find(connection, key) if connection else None
-                if found is None:
-                    return None
-                number, body = found
-                if body is None:
-                    self._drop(number)
-                    return None
+                body = find(connection, key) if connection else None
+            except ValueError:
+                self._drop(key)
+                return None
             except sqlite3.Error as error:
                 self._give_up(error)
                 return None
-            self._used[key] = time.time_ns()
-            if len(self._used) >= _MOST_MARKS:
-                self._put([])
+            if body is not None:
+                self._note(key)
             return body
 
     def put(self, entries: Iterable[tuple[bytes, bytes]]) -> None:
@@ -164,13 +160,18 @@ class PointCache:
         except sqlite3.Error as error:
             self._stop_keeping(error)
 
-    def _drop(self, number: int) -> None:
+    def _note(self, key: bytes) -> None:
+        self._used[key] = time.time_ns()
+        if len(self._used) >= _MOST_MARKS:
+            self._put([])
+
+    def _drop(self, key: bytes) -> None:
         self._warn("a damaged point is left out, and traced anew")
         connection = self._writable()
         if connection:
             try:
                 with transaction(connection):
-                    delete(connection, [number])
+                    drop(connection, key)
             except sqlite3.Error as error:
                 self._stop_keeping(error)
 
@@ -255,6 +256,8 @@ def clear(file: Path) -> None:
         try:
             connection = connect(file)
             try:
+                if not connection.writable:
+                    raise PermissionError("it, or its folder, can't be written")
                 empty(connection)
             finally:
                 connection.close()

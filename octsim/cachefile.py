@@ -16,14 +16,18 @@ APPLICATION = 0x4F435450
 """In the header of each cache, whichever the version: OCTP."""
 VERSION = 1
 _MAGIC = b"SQLite format 3\0"
-_PATIENCE = 60.0  # s, for other processes that write
-_LARGEST_LOG = 16_000_000  # bytes; it may grow beyond for a while, and is cut back
+PATIENCE = 60_000
+"""For other processes that write, ms."""
+LARGEST_LOG = 16_000_000
+"""Bytes beyond which the log of what was written is brought into the file, and cut back."""
 _LOCKS = (512, 0x40000000)
 """Number and begin of the bytes that SQLite locks, one of them for as long as a file is open."""
 _SCHEMA = (
-    # bodies stand apart, so that marking or counting points reads none of them
-    "CREATE TABLE points (number INTEGER PRIMARY KEY, key BLOB NOT NULL UNIQUE,"
-    " used INTEGER NOT NULL, size INTEGER NOT NULL, checksum BLOB NOT NULL)",
+    "PRAGMA auto_vacuum = INCREMENTAL",
+    # bodies stand apart, so that marking or counting points reads none of them; keys stand in one
+    # place, with no index that damage could tell apart from the table
+    "CREATE TABLE points (key BLOB PRIMARY KEY, number INTEGER NOT NULL, used INTEGER NOT NULL,"
+    " size INTEGER NOT NULL, checksum BLOB NOT NULL) WITHOUT ROWID",
     "CREATE TABLE bodies (number INTEGER PRIMARY KEY, body BLOB NOT NULL)",
     "CREATE TABLE rates (scheme TEXT PRIMARY KEY, points INTEGER NOT NULL,"
     " cpu_seconds REAL NOT NULL, bytes INTEGER NOT NULL)",
@@ -63,9 +67,9 @@ def is_damage(error: sqlite3.Error) -> bool:
 
 
 @contextmanager
-def transaction(connection: sqlite3.Connection, kind: str = "IMMEDIATE") -> Iterator[None]:
+def transaction(connection: sqlite3.Connection) -> Iterator[None]:
     """Write all or nothing."""
-    connection.execute(f"BEGIN {kind}")
+    connection.execute("BEGIN IMMEDIATE")
     try:
         yield
         connection.execute("COMMIT")
@@ -92,11 +96,11 @@ def connect(file: Path) -> Connection:
     """
     with _GUARD:
         path = file.resolve()
-        if path.exists() and not _is_open(path):
-            _recognise(file)
         if not path.exists():
             path.parent.mkdir(parents=True, exist_ok=True)
             path.touch()
+        if not _is_open(path):
+            _recognise(path, file)
         if _can_write(path):
             return _prepared(_connection(path, "mode=rw", writable=True), file)
         try:
@@ -120,18 +124,36 @@ def _is_open(path: Path) -> bool:
     return any(connection.file == path for connection in _OPEN)
 
 
-def _recognise(file: Path) -> None:
-    if file.is_dir():
+def _recognise(path: Path, file: Path) -> None:
+    """Look whose a file is; fill it, if it is empty."""
+    if path.is_dir():
         raise CacheError(f"{file}: is a folder, not a point cache; name a file")
-    with file.open("rb") as stream:
+    with path.open("rb") as stream:
+        fcntl.lockf(stream, fcntl.LOCK_SH, *_LOCKS)  # not while another process fills it
         header = stream.read(100)
     if not header:
-        return  # one that was never filled
-    if int.from_bytes(header[68:72], "big") != APPLICATION:
+        _fill(path)
+    elif int.from_bytes(header[68:72], "big") != APPLICATION:
         raise CacheError(f"{file}: is not a point cache of octsim; move it away or name another")
-    _require_known(file, int.from_bytes(header[60:64], "big"))
-    if not header.startswith(_MAGIC):
-        raise sqlite3.DatabaseError("file is not a database")
+    else:
+        _require_known(file, int.from_bytes(header[60:64], "big"))
+        if not header.startswith(_MAGIC):
+            raise sqlite3.DatabaseError("file is not a database")
+
+
+def _fill(path: Path) -> None:
+    """Write a cache without entries into an empty file, at once, so that it always has a header."""
+    connection = sqlite3.connect(":memory:", isolation_level=None)
+    with contextlib.closing(connection):
+        for statement in _SCHEMA:
+            connection.execute(statement)
+        content = connection.serialize()
+    with path.open("r+b") as stream:
+        fcntl.lockf(stream, fcntl.LOCK_EX, *_LOCKS)
+        if not stream.read(1):
+            stream.write(content)
+            stream.flush()
+            os.fsync(stream.fileno())
 
 
 def _require_known(file: Path, version: int) -> None:
@@ -145,7 +167,7 @@ def _require_known(file: Path, version: int) -> None:
 def _connection(path: Path, how: str, *, writable: bool) -> Connection:
     connection = sqlite3.connect(
         f"{path.as_uri()}?{how}", uri=True, factory=Connection, isolation_level=None,
-        timeout=_PATIENCE, check_same_thread=False,
+        timeout=PATIENCE / 1000, check_same_thread=False,
     )  # fmt: skip
     connection.file, connection.writable = path, writable
     connection.text_factory = bytes  # damage can make anything of a column, and no text is kept
@@ -158,25 +180,14 @@ def _prepared(connection: Connection, file: Path) -> Connection:
         (version,) = connection.execute("PRAGMA user_version").fetchone()
         _require_known(file, version)
         if connection.writable:
-            if version == 0:
-                _create(connection)
-            # only now: the header of a log's database must say at once whose it is
             connection.execute("PRAGMA journal_mode = WAL")
             connection.execute("PRAGMA synchronous = NORMAL")
-            connection.execute(f"PRAGMA journal_size_limit = {_LARGEST_LOG}")
+            connection.execute(f"PRAGMA journal_size_limit = {LARGEST_LOG}")
         connection.execute("SELECT count(*) FROM rates").fetchone()
     except BaseException:
         connection.close()
         raise
     return connection
-
-
-def _create(connection: Connection) -> None:
-    connection.execute("PRAGMA auto_vacuum = INCREMENTAL")
-    with transaction(connection, "EXCLUSIVE"):
-        if connection.execute("PRAGMA user_version").fetchone() == (0,):
-            for statement in _SCHEMA:
-                connection.execute(statement)
 
 
 def erase(file: Path) -> None:

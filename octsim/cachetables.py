@@ -6,19 +6,15 @@ from typing import NamedTuple
 
 import xxhash
 
-from octsim.cachefile import transaction
+from octsim.cachefile import LARGEST_LOG, PATIENCE, Connection, transaction
 
 _LEFT_AFTER_EVICTION = 0.9
-_FIND = "SELECT number, checksum, body FROM points JOIN bodies USING (number) WHERE key = ?"
-_KEEP = """
-    INSERT INTO points (key, used, size, checksum) VALUES (?, ?, ?, ?)
-    ON CONFLICT (key) DO UPDATE
-    SET used = excluded.used, size = excluded.size, checksum = excluded.checksum
-    RETURNING number"""
+_PAUSE = 500  # ms, for those who read to let the log be cut
+_FIND = "SELECT checksum, body FROM points JOIN bodies USING (number) WHERE key = ?"
 _OLDEST = """
-    SELECT number FROM (
-        SELECT number, sum(size) OVER (ORDER BY used, number) - size AS older FROM points
-    ) WHERE older < ?"""
+    SELECT key, number FROM (
+        SELECT key, number, sum(size) OVER (ORDER BY used, number) - size AS older FROM points
+    ) WHERE older < ? * (SELECT sum(size) FROM points)"""
 _ADD = """
     INSERT INTO rates VALUES (?, ?, ?, ?)
     ON CONFLICT (scheme) DO UPDATE
@@ -77,14 +73,21 @@ def _checksum(key: bytes, body: bytes) -> bytes:
     return xxhash.xxh3_128_digest(key + body)
 
 
-def find(connection: sqlite3.Connection, key: bytes) -> tuple[int, bytes | None] | None:
-    """Give an entry's number and body; no body if it is damaged, None if there is no entry."""
+def find(connection: sqlite3.Connection, key: bytes) -> bytes | None:
+    """Give an entry's body; None if there is no entry.
+
+    Raises
+    ------
+    ValueError
+        If the entry is damaged.
+    """
     found = connection.execute(_FIND, (key,)).fetchone()
     if found is None:
         return None
-    number, checksum, body = found
-    sound = isinstance(body, bytes) and checksum == _checksum(key, body)
-    return number, body if sound else None
+    checksum, body = found
+    if not isinstance(body, bytes) or checksum != _checksum(key, body):
+        raise ValueError("the checksum is not that of the key and the body")
+    return body
 
 
 def mark(connection: sqlite3.Connection, used: Mapping[bytes, int]) -> None:
@@ -99,9 +102,15 @@ def keep(connection: sqlite3.Connection, rows: Iterable[Row], allowed: int) -> N
     """Add entries, or replace them, and evict what goes beyond the bytes that are allowed."""
     rows = list(rows)
     _make_room(connection, allowed, sum(row.size for row in rows))
-    for *columns, body in rows:
-        (number,) = connection.execute(_KEEP, columns).fetchone()
-        connection.execute("REPLACE INTO bodies VALUES (?, ?)", (number, body))
+    for row in rows:
+        before = connection.execute("SELECT number FROM points WHERE key = ?", row[:1]).fetchone()
+        number = connection.execute(
+            "REPLACE INTO bodies VALUES (?, ?)", (before[0] if before else None, row.body)
+        ).lastrowid
+        connection.execute(
+            "REPLACE INTO points VALUES (?, ?, ?, ?, ?)",
+            (row.key, number, row.used, row.size, row.checksum),
+        )
     # what they take in pages is a little more
     _make_room(connection, allowed, 0)
     connection.execute("UPDATE allowed SET bytes = ?1 WHERE bytes <> ?1", (allowed,))
@@ -109,24 +118,35 @@ def keep(connection: sqlite3.Connection, rows: Iterable[Row], allowed: int) -> N
 
 def _make_room(connection: sqlite3.Connection, allowed: int, coming: int) -> None:
     """Delete what is unused for longest, if so many bytes more would not fit; some to spare."""
-    size = _bytes_in_use(connection) + coming
-    if size > allowed:
-        excess = size - _LEFT_AFTER_EVICTION * allowed
-        delete(connection, [number for (number,) in connection.execute(_OLDEST, (excess,))])
+    in_use = _bytes_in_use(connection)
+    if in_use + coming > allowed:
+        # as a share, since pages are seldom full
+        share = (in_use + coming - _LEFT_AFTER_EVICTION * allowed) / in_use
+        oldest = connection.execute(_OLDEST, (share,)).fetchall()
+        connection.executemany("DELETE FROM points WHERE key = ?", [row[:1] for row in oldest])
+        connection.executemany("DELETE FROM bodies WHERE number = ?", [row[1:] for row in oldest])
 
 
-def delete(connection: sqlite3.Connection, numbers: Iterable[int]) -> None:
-    """Delete entries."""
-    rows = [(number,) for number in numbers]
-    connection.executemany("DELETE FROM points WHERE number = ?", rows)
-    connection.executemany("DELETE FROM bodies WHERE number = ?", rows)
+def drop(connection: sqlite3.Connection, key: bytes) -> None:
+    """Delete an entry."""
+    connection.execute(
+        "DELETE FROM bodies WHERE number = (SELECT number FROM points WHERE key = ?)", (key,)
+    )
+    connection.execute("DELETE FROM points WHERE key = ?", (key,))
 
 
-def shorten(connection: sqlite3.Connection, allowed: int) -> None:
-    """Give free pages beyond the size back, such as when less is allowed than before."""
+def shorten(connection: Connection, allowed: int) -> None:
+    """Give back free pages beyond the size, as when less is allowed than before, and a long log."""
     beyond = _number(connection, "page_count") - allowed // _number(connection, "page_size")
     if beyond > 0:
-        connection.execute(f"PRAGMA incremental_vacuum ({beyond})").fetchall()
+        # as a script, since it is one step a page, of which `execute` takes the first alone
+        connection.executescript(f"PRAGMA incremental_vacuum ({beyond})")
+    log = connection.file.with_name(connection.file.name + "-wal")
+    if log.exists() and log.stat().st_size > LARGEST_LOG:
+        # while there is always somebody who reads, SQLite would let it grow
+        connection.execute(f"PRAGMA busy_timeout = {_PAUSE}")
+        connection.execute("PRAGMA wal_checkpoint (TRUNCATE)")
+        connection.execute(f"PRAGMA busy_timeout = {PATIENCE}")
 
 
 def empty(connection: sqlite3.Connection) -> None:
