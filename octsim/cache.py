@@ -35,7 +35,6 @@ from octsim.errors import CacheError
 from octsim.files import reason
 
 _MOST_MARKS = 10_000  # that wait in memory
-_REMEDY = "`octsim cache clear` makes a new one"
 
 
 class PointCache:
@@ -186,7 +185,7 @@ class PointCache:
         self._let_go()
         self._reads = False
         if is_damage(error):
-            self._warn(f"damaged ({reason(error)}); going on without it; {_REMEDY}")
+            self._warn(f"damaged ({reason(error)}); going on without it; {_remedy(self.file)}")
         else:
             self._warn(f"can't be read ({reason(error)}); going on without it")
 
@@ -238,7 +237,7 @@ def describe(file: Path) -> Description | None:
             connection.close()
     except (OSError, sqlite3.Error) as error:
         if isinstance(error, sqlite3.Error) and is_damage(error):
-            raise CacheError(f"{file}: damaged ({reason(error)}); {_REMEDY}") from None
+            raise CacheError(f"{file}: damaged ({reason(error)}); {_remedy(file)}") from None
         raise CacheError(f"{file}: can't be read ({reason(error)})") from None
 
 
@@ -265,6 +264,10 @@ def clear(file: Path) -> None:
             erase(file)
     except OSError as error:
         raise CacheError(f"{file}: can't be cleared ({reason(error)})") from None
+
+
+def _remedy(file: Path) -> str:
+    return f"`octsim cache clear --file {file}` makes a new one"
 
 
 _CACHES: WeakSet[PointCache] = WeakSet()

@@ -1,6 +1,7 @@
 """The file of a point cache: an SQLite database, recognised before anything in it is touched."""
 
 import contextlib
+import errno
 import fcntl
 import os
 import sqlite3
@@ -147,13 +148,21 @@ def _fill(path: Path) -> None:
     with contextlib.closing(connection):
         for statement in _SCHEMA:
             connection.execute(statement)
-        content = connection.serialize()
-    with path.open("r+b") as stream:
+        content = bytearray(connection.serialize())
+    # of the format with a log from the start: to change to it is nothing that processes can do at
+    # the same time
+    content[18:20] = b"\2\2"
+    with path.open("r+b", buffering=0) as stream:
         fcntl.lockf(stream, fcntl.LOCK_EX, *_LOCKS)
-        if not stream.read(1):
-            stream.write(content)
-            stream.flush()
+        if stream.read(1):
+            return  # another process was faster
+        try:
+            if stream.write(content) < len(content):
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
             os.fsync(stream.fileno())
+        except OSError:
+            stream.truncate(0)
+            raise
 
 
 def _require_known(file: Path, version: int) -> None:
@@ -180,7 +189,6 @@ def _prepared(connection: Connection, file: Path) -> Connection:
         (version,) = connection.execute("PRAGMA user_version").fetchone()
         _require_known(file, version)
         if connection.writable:
-            connection.execute("PRAGMA journal_mode = WAL")
             connection.execute("PRAGMA synchronous = NORMAL")
             connection.execute(f"PRAGMA journal_size_limit = {LARGEST_LOG}")
         connection.execute("SELECT count(*) FROM rates").fetchone()

@@ -399,7 +399,7 @@ def test_damage_met_on_the_way_is_said_once(filled: Path, caplog: pytest.LogCapt
             assert right(cache, SOME) == 0
             cache.put(SOME)
         assert len(caplog.records) == 1
-        assert "`octsim cache clear` makes a new one" in caplog.text
+        assert f"`octsim cache clear --file {filled}` makes a new one" in caplog.text
         clear(filled)  # this run no longer uses it
         assert right(cache, SOME) == 0
     with PointCache(filled, GB) as cache:
@@ -473,19 +473,26 @@ def test_where_no_file_can_be_made_a_run_goes_on(
     assert list(public.iterdir()) == []
 
 
+@contextlib.contextmanager
+def longest_file(size: int) -> Iterator[None]:
+    """Have every write beyond a size fail."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
 def test_a_full_disk_is_said_once_and_reads_go_on(
     filled: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     with PointCache(filled, GB) as cache:
         right(cache, SOME)
-        limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, limits[1]))
-        try:
+        with longest_file(100_000):
             for _ in range(3):
                 cache.put(ENTRIES)
                 assert right(cache, ENTRIES) == 40
-        finally:
-            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     assert len(caplog.records) == 1
     assert "points.sqlite: can't be written (" in caplog.text
     with PointCache(filled, GB) as cache:
@@ -493,6 +500,20 @@ def test_a_full_disk_is_said_once_and_reads_go_on(
         cache.put(ENTRIES)
         assert right(cache, ENTRIES) == POINTS
     assert in_order(filled)
+
+
+@pytest.mark.parametrize("size", [0, 50, 5_000])
+def test_a_disk_that_is_full_from_the_start_leaves_no_half_cache(
+    size: int, file: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    with longest_file(size), PointCache(file, GB) as cache:
+        cache.put(SOME)
+        assert right(cache, SOME) == 0
+    assert len(caplog.records) == 1
+    assert "points.sqlite: can't be opened (" in caplog.text
+    with PointCache(file, GB) as cache:
+        cache.put(SOME)
+        assert right(cache, SOME) == 40
 
 
 def test_clearing_empties_what_another_process_uses(filled: Path) -> None:
