@@ -1,5 +1,6 @@
 """A cache gives back what was put, whoever uses it at the same time and whoever is killed."""
 
+import fcntl
 import multiprocessing
 import os
 import random
@@ -120,25 +121,29 @@ def test_the_file_stays_within_its_size(batch: int, file: Path) -> None:
     assert in_order(file)
 
 
-def test_the_log_stays_short_while_others_read(file: Path) -> None:
-    body = bytes(20_000)
-    with PointCache(file, 1.0) as cache, PointCache(file, 1.0) as other:
-        done = threading.Event()
+READER = """
+import contextlib, sqlite3, sys
+with contextlib.closing(sqlite3.connect(sys.argv[1])) as connection:
+    while True:
+        connection.execute("SELECT sum(size) FROM points").fetchall()
+"""
 
-        def read() -> None:
-            while not done.is_set():
-                other.get(b"0")
 
-        reader = threading.Thread(target=read)
-        reader.start()
-        sizes = []
-        for turn in range(150):
+def test_the_log_stays_short_while_others_always_read(file: Path) -> None:
+    body, sizes = bytes(20_000), []
+    with PointCache(file, 1.0) as cache:
+        cache.put([(b"0", body)])
+        readers = [subprocess.Popen([sys.executable, "-c", READER, str(file)]) for _ in range(3)]
+        time.sleep(0.5)
+        for turn in range(60):
             cache.put((b"%d" % (50 * turn + i), body) for i in range(50))
             sizes.append(log(file).stat().st_size)
-        done.set()
-        reader.join()
-    assert file.stat().st_size > 150e6
-    assert max(sizes) < 40e6
+        for reader in readers:
+            assert reader.poll() is None
+            reader.kill()
+            reader.wait()
+    assert file.stat().st_size > 60e6
+    assert max(sizes) < 25e6
 
 
 def test_threads_share_a_cache(file: Path) -> None:
@@ -200,18 +205,26 @@ def test_processes_that_make_one_cache_at_once_agree(file: Path) -> None:
 
 
 def test_a_fork_opens_the_file_anew(filled: Path) -> None:
+    fork = multiprocessing.get_context("fork")
+    used, locked = fork.Event(), fork.Event()
     with PointCache(filled, GB) as cache:
         assert right(cache, SOME) == 40
 
         def use() -> None:
             assert right(cache, SOME) == 40
             cache.put(ENTRIES[40:80])
-            os._exit(0)
+            used.set()
+            locked.wait(30)
+            os._exit(right(cache, ENTRIES) - 120)
 
-        child = multiprocessing.get_context("fork").Process(target=use)
+        child = fork.Process(target=use)
         child.start()
         cache.put(ENTRIES[80:120])
-        child.join()
-        assert child.exitcode == 0
-        assert right(cache, ENTRIES) == 120
+        used.wait(30)
+    # with this side's locks gone, the child has some of its own
+    with filled.open("r+b") as stream, pytest.raises(BlockingIOError):
+        fcntl.lockf(stream, fcntl.LOCK_EX | fcntl.LOCK_NB, 512, 0x40000000)
+    locked.set()
+    child.join()
+    assert child.exitcode == 0
     assert in_order(filled)
