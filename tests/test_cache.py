@@ -228,3 +228,33 @@ def test_a_fork_opens_the_file_anew(filled: Path) -> None:
     child.join()
     assert child.exitcode == 0
     assert in_order(filled)
+
+
+def test_clearing_empties_what_another_process_uses(filled: Path) -> None:
+    with PointCache(filled, GB) as cache:
+        command = [sys.executable, "-m", "octsim", "cache", "clear", "--file", str(filled)]
+        subprocess.run(command, check=True, capture_output=True)
+        assert right(cache, SOME) == 0
+        assert cache.rates("paths") is None
+        cache.put(SOME)
+        assert right(cache, SOME) == 40
+        subprocess.run(command, check=True, capture_output=True)
+        assert log(filled).stat().st_size == 0
+    assert filled.stat().st_size < 50_000
+    assert in_order(filled)
+
+
+def test_a_file_open_twice_in_a_process_stays_locked(filled: Path) -> None:
+    # a descriptor of it that is closed would take the locks of SQLite's along
+    with PointCache(filled, GB), PointCache(filled, GB):
+        describe(filled)
+        with pytest.raises(subprocess.CalledProcessError):
+            subprocess.run(
+                [
+                    sys.executable, "-c",
+                    "import fcntl, sys; file = open(sys.argv[1], 'r+b');"
+                    "fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB, 512, 0x40000000)",
+                    str(filled),
+                ],
+                check=True, capture_output=True,
+            )  # fmt: skip
