@@ -91,8 +91,8 @@ def measure(cores: int, gaps: int, folder: Path) -> list[str]:
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     return [
         f"{count} combinations, {points} points: {time.monotonic() - begin_all:.0f} s, processor "
-        f"{cpu:.0f} s = {1e3 * cpu / points:.2f} ms a point, making {100 * making.seconds / cpu:.0f} %, "
-        f"largest memory {memory:.0f} MiB",
+        f"{cpu:.0f} s = {1e3 * cpu / points:.2f} ms a point, making "
+        f"{100 * making.seconds / cpu:.0f} %, largest memory {memory:.0f} MiB",
         *told,
     ]
 

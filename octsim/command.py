@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import NoReturn
 
 from octsim.cache import clear, describe
+from octsim.config import Cache
 from octsim.errors import OctsimError
 
-CACHE = Path(".octsim/points.sqlite")
+CACHE = Path(Cache().file)
 """Where a checkout keeps its traced points."""
 
 

@@ -42,7 +42,7 @@ def pack(light: Light) -> bytes:
 
 
 def unpack(body: bytes) -> Light:
-    """Read light from bytes; its arrays are views of them, and read only.
+    """Read light from bytes.
 
     Raises
     ------
@@ -55,11 +55,12 @@ def unpack(body: bytes) -> Light:
     expected = _HEADER.size + _NUMBER * (_ARRAYS * rays + counted)
     if min(rays, counted) < 0 or len(body) != expected:
         raise ValueError(f"{len(body)} bytes are not light of {rays} rays, {counted} outcomes")
+    held = bytearray(body)  # arrays that can't be written would need machine code of their own
     path, amplitude, rough, optical_path_length = (
-        np.frombuffer(body, kind, rays, _HEADER.size + _NUMBER * rays * place)
+        np.frombuffer(held, kind, rays, _HEADER.size + _NUMBER * rays * place)
         for place, kind in enumerate(("<i8", "<f8", "<f8", "<f8"))
     )
-    outcomes = np.frombuffer(body, "<i8", counted, expected - _NUMBER * counted)
+    outcomes = np.frombuffer(held, "<i8", counted, expected - _NUMBER * counted)
     return Light(
         path,
         amplitude,

@@ -132,7 +132,7 @@ def gaussian_fits(config: Config, sweep: xr.Dataset) -> Stream:
     """
     title = "Gaussian plus a constant, fitted to the intensity over the focus"
     layout = Layout("gaussian_fits", config, title, __name__, _diameters)
-    stored = Stored(sweep, config)
+    stored = Stored(sweep, "focus_sweep", config, layout)
     return Stream(
         layout,
         (Part(at, 0, 1, _fitted(stored.part(at))) for at in layout.combinations),
@@ -170,7 +170,7 @@ def focus_law(config: Config, fits: xr.Dataset) -> Stream:
     """
     title = "Focus of greatest intensity as a linear function of the diameter"
     layout = Layout("focus_law", config, title, __name__, _diameters)
-    stored = Stored(fits, config)
+    stored = Stored(fits, "gaussian_fits", config, layout)
 
     def line(at: Combination) -> dict[str, object]:
         part = stored.part(at)

@@ -142,7 +142,7 @@ def fourier(config: Config, spectra: xr.Dataset) -> Stream:
 
     title = "Fourier transform of the spectrum, for each diameter"
     layout = Layout("fourier", config, title, __name__, own, "diameter")
-    return Stream(layout, _transformed(layout, Stored(spectra, config)))
+    return Stream(layout, _transformed(layout, Stored(spectra, "spectra", config, layout)))
 
 
 def _block_points(layout: Layout) -> int:
@@ -177,7 +177,7 @@ def phase_slope(config: Config, transformed: xr.Dataset) -> Stream:
 
     title = "Phase slope: change of the spectrum's phase with the diameter"
     layout = Layout("phase_slope", config, title, __name__, own, "diameter", _component_count)
-    return Stream(layout, _differentiated(layout, Stored(transformed, config)))
+    return Stream(layout, _differentiated(layout, Stored(transformed, "fourier", config, layout)))
 
 
 def _component_count(config: Config) -> dict[str, int]:

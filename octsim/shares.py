@@ -105,8 +105,9 @@ def light_paths(config: Config, detected: xr.Dataset) -> Stream:
         return {"diameter": ("diameter", config.sweep.diameters.values())}
 
     title = "What each light path has in the spectra"
-    stored = Stored(detected, config)
-    codes = _strongest_first(Layout("paths", config, title, __name__, swept, "diameter"), stored)
+    unnamed = Layout("paths", config, title, __name__, swept, "diameter")
+    stored = Stored(detected, "detections", config, unnamed)
+    codes = _strongest_first(unnamed, stored)
     named: dict[str, Coordinate] = {
         "path": ("path", np.array([path_name(code) for code in codes.tolist()], str)),
         "path_code": ("path", codes),

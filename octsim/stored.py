@@ -11,7 +11,7 @@ from octsim.config import Config
 from octsim.errors import DatasetError
 from octsim.files import reason
 from octsim.grid import Combination, as_text
-from octsim.layout import OF_ITS_OWN, filling
+from octsim.layout import OF_ITS_OWN, Layout, filling
 from octsim.reading import stage_axes
 
 RAGGED = "rays_detected"
@@ -25,12 +25,19 @@ class Stored:
     ----------
     dataset : Dataset
         As a stage gives it.
+    stage : str
+        That stage.
     config : Config
         The run that it is of.
+    like : Layout, optional
+        Whose coordinates it has to have, where both have one.
     """
 
-    def __init__(self, dataset: xr.Dataset, config: Config) -> None:
-        self._axes = stage_axes(str(dataset.attrs["stage"]), config)
+    def __init__(
+        self, dataset: xr.Dataset, stage: str, config: Config, like: Layout | None = None
+    ) -> None:
+        self._axes = stage_axes(stage, config)
+        self._stage, self._like = stage, like
         self._rows = [
             {as_text(list(row)): place for place, row in enumerate(axis.rows)}
             for axis in self._axes
@@ -58,19 +65,28 @@ class Stored:
         Raises
         ------
         DatasetError
-            If the file can't be read.
+            If the file can't be read, or is of other points.
         """
         place = {
             axis.name: rows[as_text([at.values[key] for key in axis.keys])]
             for axis, rows in zip(self._axes, self._rows, strict=True)
         }
+        file = self.dataset.encoding.get("source", self._stage)
         try:
-            return self._own(place, points, swept).load()
+            part = self._own(place, points, swept).load()
         except (OSError, RuntimeError, ValueError) as error:
-            file = self.dataset.encoding.get("source", self.dataset.attrs["stage"])
             raise DatasetError(
                 f"{file}: can't be read ({reason(error)}); move it away and run again"
             ) from None
+        own = self._like.own[at.position] if self._like else {}
+        for name in set(own) & set(map(str, part.coords)):
+            asked = own[name][1][points or slice(None)] if name == swept else own[name][1]
+            if not np.array_equal(part[name].values, asked):
+                raise DatasetError(
+                    f"{file}: its {name} is not that of the config; give the whole dataset, and "
+                    "the config that it was made from"
+                )
+        return part
 
     def _own(self, place: dict[str, int], points: slice | None, swept: str) -> xr.Dataset:
         one = self.dataset.isel(place).drop_vars(

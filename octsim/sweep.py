@@ -115,7 +115,7 @@ def _detected(
     layout: Layout, law: xr.Dataset | None, whence: Points, threads: int
 ) -> Iterator[Part]:
     config = layout.config
-    stored = Stored(law, config) if law is not None else None
+    stored = Stored(law, "focus_law", config) if law is not None else None
 
     def foci(at: Combination) -> NDArray[np.float64]:
         given = isinstance(at.config.sweep.focus, FocusLine)
@@ -198,7 +198,7 @@ def spectra(config: Config, detected: xr.Dataset, threads: int = 1) -> Stream:
 
     title = "Spectrum of the detected light, for each diameter"
     layout = Layout("spectra", config, title, __name__, own, "diameter")
-    return Stream(layout, _summed(layout, Stored(detected, config), threads))
+    return Stream(layout, _summed(layout, Stored(detected, "detections", config, layout), threads))
 
 
 def _summed(layout: Layout, stored: Stored, threads: int) -> Iterator[Part]:

@@ -54,7 +54,7 @@ def test_light_comes_back_to_the_bit(light: Light) -> None:
         if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
             assert one.dtype == other.dtype
             assert one.flags.aligned
-            assert not one.flags.writeable
+            assert one.flags.writeable
 
 
 @given(lights(), st.data())

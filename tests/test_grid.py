@@ -197,7 +197,7 @@ def test_a_dataset_over_a_grid_holds_that_of_every_plain_config(name: str) -> No
         plain = run(at.config)
         for stage in STAGES:
             swept = "focus" if stage == "focus_scan" else "diameter"
-            part, alone = Stored(whole[stage], config).part(at, swept=swept), plain[stage]
+            part, alone = Stored(whole[stage], stage, config).part(at, swept=swept), plain[stage]
             if stage == "paths":  # it lists the paths of all combinations
                 part = part.set_index(path="path_code").sel(path=alone["path_code"].values)
                 alone = alone.set_index(path="path_code")
@@ -243,14 +243,14 @@ def test_blocks_threads_and_order_change_no_bit(monkeypatch: pytest.MonkeyPatch)
         for stage in STAGES:
             for at in combinations(config):
                 swept = "focus" if stage == "focus_scan" else "diameter"
-                one = Stored(whole[stage], configs[0]).part(at, swept=swept)
-                other = Stored(again[stage], config).part(at, swept=swept)
+                one = Stored(whole[stage], stage, configs[0]).part(at, swept=swept)
+                other = Stored(again[stage], stage, config).part(at, swept=swept)
                 assert one.drop_attrs().identical(other.drop_attrs()), stage
 
 
 def test_a_part_of_a_combination_is_read_alone() -> None:
     config = gridded({"scene.gap": ["0 nm", "30 nm"]}, GIVEN)
-    stored = Stored(octsim.detections(config), config)
+    stored = Stored(octsim.detections(config), "detections", config)
     at = list(combinations(config))[1]
     whole = stored.part(at)
     first, rest = stored.part(at, slice(0, 2)), stored.part(at, slice(2, 5))

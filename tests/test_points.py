@@ -161,7 +161,7 @@ def test_a_damaged_entry_is_traced_again_and_kept(
 
 def test_equal_diameters_of_two_ranges_have_the_same_bits() -> None:
     def diameters(config: Config) -> list[float]:
-        return config.sweep.diameters.values().tolist()
+        return list(map(float, config.sweep.diameters.values()))
 
     for num in (11, 76, 151, 601):
         coarse = load_config(SMALL, sweep(num))
