@@ -3,6 +3,7 @@
 # make lint                                   formatting, style and types
 # make docs                                   the parts of docs/ that are made
 # make bench                                  speed, as ratios within one run
+# make bench-sweeps                           what a grid of 1000 combinations takes, minutes
 # make bench-peers                            the same beside other ray tracers, optional
 # make kills                                  30 kills at random moments, 30 same results
 # make lock                                   resolve the dependencies anew
@@ -24,7 +25,7 @@ except octsim.ConfigError as error:
 endef
 export CHECK
 
-.PHONY: results test lint format docs bench bench-peers kills lock clean
+.PHONY: results test lint format docs bench bench-sweeps bench-peers kills lock clean
 results: .venv/run
 	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
 	@$(BIN)/snakemake --cores $(CORES) --configfile "$(CONFIG)"
@@ -71,6 +72,9 @@ lock: .venv/bin/python
 
 bench: .venv/run
 	$(BIN)/python benchmarks/bench.py
+
+bench-sweeps: .venv/run
+	$(BIN)/python benchmarks/large.py
 
 bench-peers: .venv-peers/run
 	.venv-peers/bin/python benchmarks/peers.py

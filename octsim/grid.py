@@ -9,6 +9,7 @@ import yaml
 
 from octsim.checks import plain_remarks
 from octsim.config import Config
+from octsim.errors import ConfigError
 from octsim.meanings import MEANINGS
 from octsim.overlays import merge, preset
 from octsim.problems import known_keys
@@ -134,3 +135,20 @@ def remarks(config: Config) -> list[str]:
         lines[0] if total == 1 else f"{lines[0]} (at {len(lines)} of {total} combinations)"
         for lines in said.values()
     ]
+
+
+def without_grid(config: Config, target: str) -> Config:
+    """Give a config that varies nothing.
+
+    Raises
+    ------
+    ConfigError
+        If it varies something, as a target of a single config can't.
+    """
+    if config.grid.varied:
+        keys = ", ".join(config.grid.varied)
+        raise ConfigError(
+            f"grid: {keys} given, but {target} is of a single config; ask for it in a config "
+            "without a grid"
+        )
+    return config

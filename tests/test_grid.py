@@ -11,7 +11,7 @@ import octsim
 from octsim import layout as layouts
 from octsim.config import Config
 from octsim.errors import ConfigError
-from octsim.grid import axes, combinations, dimension_name, remarks
+from octsim.grid import axes, combinations, dimension_name, remarks, without_grid
 from octsim.loading import load_config
 from octsim.netcdf import write_stream
 from octsim.problems import known_keys
@@ -258,3 +258,9 @@ def test_a_part_of_a_combination_is_read_alone() -> None:
         joined = np.concatenate([first[name].values, rest[name].values])
         np.testing.assert_array_equal(joined, whole[name].values)
     assert first["rays_detected"].sum() == first.sizes["ray"]
+
+
+def test_a_target_of_a_single_config_refuses_a_grid() -> None:
+    with pytest.raises(ConfigError, match="grid: scene.gap given, but tradeoff is of a single"):
+        without_grid(gridded({"scene.gap": ["0 nm", "30 nm"]}), "tradeoff")
+    assert without_grid(load_config(SMALL), "tradeoff") == load_config(SMALL)

@@ -8,10 +8,11 @@ from job import end_with_the_run, job
 from octsim.datasets import write
 from octsim.figures.style import look, save
 from octsim.figures.tradeoff import tradeoff_figure
+from octsim.grid import without_grid
 from octsim.tradeoff import summary, tradeoff
 
 with job(snakemake) as config, look():
-    measured = tradeoff(config, snakemake.threads, end_with_the_run)
+    measured = tradeoff(without_grid(config, "tradeoff"), snakemake.threads, end_with_the_run)
     write(measured, snakemake.output.tradeoff[0])
     for file in map(Path, snakemake.output.figures):
         save(tradeoff_figure(measured), file)
