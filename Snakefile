@@ -234,6 +234,7 @@ rule figures:
         "results/{run}/logs/figures.log",
     benchmark:
         "results/{run}/benchmarks/figures.tsv"
+    threads: workflow.cores
     params:
         made_from=made_from("figures", "processing"),
     message:

@@ -1,14 +1,26 @@
 """Draw the figures of a run from its datasets."""
 
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 
-from job import job
+from job import end_with_the_run, job
 
 from octsim.datasets import read
 from octsim.figures import FIGURES
 from octsim.figures.style import look, save
 
+
+def draw(name: str) -> None:
+    """Draw one figure in all its forms; a forked process has what was read."""
+    figure = FIGURES[name](stages, config.processing)
+    for file in map(Path, snakemake.output):
+        if file.stem == name:
+            save(figure, file)
+
+
 with job(snakemake) as config, look():
     stages = {stage: read(file, stage, config) for stage, file in snakemake.input.items()}
-    for file in map(Path, snakemake.output):
-        save(FIGURES[file.stem](stages, config.processing), file)
+    names = dict.fromkeys(Path(file).stem for file in snakemake.output)
+    with ProcessPoolExecutor(snakemake.threads, get_context("fork"), end_with_the_run) as pool:
+        list(pool.map(draw, names))
