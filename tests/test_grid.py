@@ -261,6 +261,6 @@ def test_a_part_of_a_combination_is_read_alone() -> None:
 
 
 def test_a_target_of_a_single_config_refuses_a_grid() -> None:
-    with pytest.raises(ConfigError, match="grid: scene.gap given, but tradeoff is of a single"):
+    with pytest.raises(ConfigError, match=r"grid: scene.gap given, but tradeoff is of a single"):
         without_grid(gridded({"scene.gap": ["0 nm", "30 nm"]}), "tradeoff")
     assert without_grid(load_config(SMALL), "tradeoff") == load_config(SMALL)
