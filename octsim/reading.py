@@ -30,6 +30,7 @@ def keys_read(stage: str, config: Config) -> tuple[str, ...]:
         "spectra": ("spectrum", *(key for key in traced if key == "tracing.accuracy")),
         "phase_slope": ("processing", "scene.refractive_index.neuron"),
         "stability": (*traced, *_SPIRAL, "spectrum", "sweep"),
+        "causes": (*traced, "spectrum", "sweep", "processing"),
         "tradeoff": (
             "scene",
             "objective",
@@ -57,6 +58,7 @@ def keys_behind(stage: str, config: Config) -> tuple[str, ...]:
         "phase_slope": (*summed, "processing"),
         "gaussian_fits": law,
         "focus_law": law,
+        "causes": (*swept, *keys_read("causes", config)),
     }
     return tuple(dict.fromkeys(behind[stage] if stage in behind else keys_read(stage, config)))
 
