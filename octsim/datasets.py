@@ -149,6 +149,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "scatter_without_leakage": ("mrad/nm", "scatter with centre, envelope and image off"),
     "left_without_leakage": ("1", "variance about the trend with those off, over the whole"),
     "left_without_all": ("1", "variance about the trend with all causes off, over the whole"),
+    "ideal_scatter_without_image": ("mrad/nm", "scatter for cos(2ndk) with its image off"),
     "beat_phase_slope": ("mrad/nm", "slope of the beat's own phase, focus by the law"),
     "beat_phase_slope_error": ("mrad/nm", "estimated error of that slope"),
     "near_phase_slope": ("mrad/nm", "slope of the near side's phase, focus by the law"),

@@ -127,6 +127,7 @@ def causes(config: Config, law: xr.Dataset | None = None, threads: int = 1) -> x
             "focus": ("diameter", foci),
             "predicted_phase_slope": predicted_phase_slope(n_neuron, k[0], k[-1]),
             **_shares(values, smooth),
+            **_ideal(reading),
             **_beats(spectra, reading, foci),
             **_over_step(spectra, reading, steps),
             **_around(spectra, reading, near),
@@ -187,6 +188,20 @@ def _shares(values: dict[Causes, Array], smooth: Array) -> dict[str, Any]:
         # what is left about the trend: removed, not only shared out
         "left_without_leakage": (no_leak - smooth).var() / whole.var(),
         "left_without_all": (none - smooth).var() / whole.var(),
+    }
+
+
+def _ideal(reading: Reading) -> dict[str, Any]:
+    """Read the thesis's ideal cos(2ndk), which is all beat: as it does, and without the image."""
+    beat = np.exp(2j * reading.n_neuron * np.outer(reading.diameter, reading.wavenumber))
+    nothing = np.zeros(beat.shape)
+    stencil = neighbours(Parts(beat, nothing, nothing), reading.diameter)
+    read = slopes(stencil, ALL, reading)
+    without = slopes(stencil, ALL - {"image"}, reading)
+    return {
+        "ideal_phase_slope": ("diameter", read),
+        "ideal_phase_slope_standard_deviation": read.std(),
+        "ideal_scatter_without_image": without.std(),
     }
 
 
@@ -255,7 +270,7 @@ def summary(found: xr.Dataset) -> str:
     """Say in one line what carries the scatter, and where the spike is."""
     order = np.argsort(-found["cause_share"].values)
     said = ", ".join(
-        f"{found['cause'].values[i]} {100 * found['cause_share'].values[i]:.0f} %"
+        f"{found['cause'].values[i]} {100 * found['cause_share'].values[i]:.1f} %"
         for i in order.tolist()
     )
     left = 100 * float(found["left_without_leakage"])

@@ -68,7 +68,7 @@ def _spectra(axes: Axes, found: xr.Dataset) -> None:
         colour = BLUE if row % 2 else BLACK
         axes.plot(k, curve, color=colour, linewidth=1)
         for name, marker in (("spike_maximum", "o"), ("spike_minimum", "v")):
-            at = int(np.abs(k - one[name]).argmin())
+            at = int(np.abs(k.values - float(one[name])).argmin())
             axes.plot(k[at], curve[at], color=VERMILION, marker=marker, markersize=6, clip_on=False)
         axes.annotate(
             f"{float(one['spike_neighbour']):.4f} µm", (float(k[-1]), float(curve[-1])),
@@ -144,13 +144,15 @@ def _shares(axes: Axes, found: xr.Dataset) -> None:
     axes.barh(row, values, color=colours, height=0.6)
     least, largest = (100 * found[name].values for name in ("least_share", "largest_share"))
     axes.hlines(row[:-2], least, largest, color="0.25", linewidth=1.2)
-    for y, value in zip(row, values, strict=True):
+    ends = np.maximum(values, [*largest, 0.0, 0.0])
+    for y, value, end in zip(row, values, ends, strict=True):
         axes.annotate(
-            f"{value:.1f}", (max(value, 0.0), y), xytext=(4, 8), textcoords="offset points",
-            fontsize=8,
+            f"{value:.1f} %", (end, y), xytext=(6, 0), textcoords="offset points", fontsize=8,
+            va="center",
         )  # fmt: skip
     axes.set_yticks(row, names)
     axes.invert_yaxis()
+    axes.margins(x=0.12)
     axes.set_xlabel("Share of the slope's variance (%); line: over all orders")
 
 
