@@ -104,6 +104,6 @@ def fields_at(
             raise OctsimError(
                 f"sweep: at a diameter of {diameters[dark][0]:.6g} um no light comes back from the "
                 f"cylinder's {side} side, so that no beat has a phase; change sweep.diameters, "
-                "sweep.focus or tracing.max_intersections"
+                "sweep.focus, tracing.max_intersections or scene.refractive_index"
             )
     return found

@@ -162,6 +162,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "half_step": ("um", "half width of the difference that a slope is taken over"),
     "step_scatter": ("mrad/nm", "scatter of the phase slope about its mean"),
     "step_largest": ("mrad/nm", "largest deviation of the phase slope from its own trend"),
+    "step_ray_noise": ("mrad/nm", "what the run's rays add to the beat's slope, rms"),
     "spike_diameter": ("um", "diameter of the largest deviation from the trend"),
     "spike_neighbour": ("um", "diameter near the largest deviation"),
     "spike_component": ("1", "strongest component of the Fourier transform"),

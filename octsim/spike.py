@@ -113,6 +113,7 @@ def causes(config: Config, law: xr.Dataset | None = None, threads: int = 1) -> x
     steps = _steps(spectra.diameter, aliasing_step(n_neuron, k[0], k[-1]))
     reading = Reading(config.processing, n_neuron, spectra.diameter, k)
     values = every_slope(spectra.chosen, reading)
+    own = spectra.chosen(ALL).at
     smooth = trend(spectra.diameter, values[frozenset()])
     off = values[ALL] - trend(spectra.diameter, values[ALL])
     spike = float(spectra.diameter[np.abs(off).argmax()])
@@ -124,6 +125,7 @@ def causes(config: Config, law: xr.Dataset | None = None, threads: int = 1) -> x
         "Causes of the phase slope's scatter and of its spike",
         {
             "phase_slope": ("diameter", values[ALL]),
+            "component": ("diameter", strongest(signal(own, ALL, config.processing))),
             "focus": ("diameter", foci),
             "predicted_phase_slope": predicted_phase_slope(n_neuron, k[0], k[-1]),
             **_shares(values, smooth),
@@ -223,14 +225,23 @@ def _beats(spectra: _Spectra, reading: Reading, foci: Array) -> dict[str, Any]:
 def _over_step(spectra: _Spectra, reading: Reading, steps: Array) -> dict[str, Any]:
     """Give scatter and largest deviation from the trend of slopes over steps, of each series."""
     shape = len(SERIES), steps.size
-    scatter, largest = np.empty(shape), np.empty(shape)
+    scatter, largest, noise = np.empty(shape), np.empty(shape), np.empty(steps.size)
     for j, step in enumerate(steps.tolist()):
-        for i, present in enumerate(SERIES.values()):
-            slope = slopes(spectra.stencil(present, step), present, reading)
+        found = {
+            present: slopes(spectra.stencil(present, step), present, reading)
+            for present in SERIES.values()
+        }
+        for i, slope in enumerate(found.values()):
             off = slope - trend(spectra.diameter, slope)
             scatter[i, j], largest[i, j] = slope.std(), np.abs(off).max()
+        by_rays = found[frozenset({"rays"})] - found[frozenset()]
+        noise[j] = np.sqrt(np.mean(by_rays**2))
     dimensions = ("series", "half_step")
-    return {"step_scatter": (dimensions, scatter), "step_largest": (dimensions, largest)}
+    return {
+        "step_scatter": (dimensions, scatter),
+        "step_largest": (dimensions, largest),
+        "step_ray_noise": ("half_step", noise),
+    }
 
 
 def _around(spectra: _Spectra, reading: Reading, near: Array) -> dict[str, Any]:
