@@ -252,8 +252,8 @@ trend; about the trend {left} % of the run's variance is left, so that these thr
 - **The oscillation**, the thesis's 2 %, is the image. A real spectrum holds the beat twice, at nd
   and at −nd. With one to three oscillations in the band the window does not keep them apart, and
   the image turns once against the component while d grows by π/(n (k_min + k_max)), {period} nm.
-  It carries {image_least} to {image_largest} %, whatever the order. The thesis's ideal cos(2ndk) has
-  nothing but its image: a scatter of {ideal} with it, of {ideal_without} without.
+  It carries {image_least} to {image_largest} %, whatever the order. The thesis's ideal cos(2ndk)
+  has nothing but its image: a scatter of {ideal} with it, of {ideal_without} without.
 - **The spike** is the level's (`centre`), together with the envelope that makes one crest higher
   than another and leaks too (`envelope`).
 - **Bins make nothing, and hand on**: alone they leave the slope as it is, and switched off last
