@@ -281,7 +281,7 @@ def summary(found: xr.Dataset) -> str:
     """Say in one line what carries the scatter, and where the spike is."""
     order = np.argsort(-found["cause_share"].values)
     said = ", ".join(
-        f"{found['cause'].values[i]} {100 * found['cause_share'].values[i]:.1f} %"
+        f"{found['cause'].values[i]} {round(100 * found['cause_share'].values[i], 1) + 0.0:.1f} %"
         for i in order.tolist()
     )
     left = 100 * float(found["left_without_leakage"])

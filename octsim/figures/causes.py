@@ -147,7 +147,7 @@ def _shares(axes: Axes, found: xr.Dataset) -> None:
     ends = np.maximum(values, [*largest, 0.0, 0.0])
     for y, value, end in zip(row, values, ends, strict=True):
         axes.annotate(
-            f"{value:.1f} %", (end, y), xytext=(6, 0), textcoords="offset points", fontsize=8,
+            f"{round(value, 1) + 0.0:.1f} %", (end, y), xytext=(6, 0), textcoords="offset points", fontsize=8,
             va="center",
         )  # fmt: skip
     axes.set_yticks(row, names)
