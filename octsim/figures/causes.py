@@ -147,8 +147,8 @@ def _shares(axes: Axes, found: xr.Dataset) -> None:
     ends = np.maximum(values, [*largest, 0.0, 0.0])
     for y, value, end in zip(row, values, ends, strict=True):
         axes.annotate(
-            f"{round(value, 1) + 0.0:.1f} %", (end, y), xytext=(6, 0), textcoords="offset points", fontsize=8,
-            va="center",
+            f"{round(value, 1) + 0.0:.1f} %", (end, y), xytext=(6, 0), va="center",
+            textcoords="offset points", fontsize=8,
         )  # fmt: skip
     axes.set_yticks(row, names)
     axes.invert_yaxis()
