@@ -281,3 +281,31 @@ rule tradeoff:
         "Measure error and cost, one setting after the other"
     script:
         "workflow/scripts/tradeoff.py"
+
+
+rule causes:
+    input:
+        focus_law=(
+            expand("results/{run}/focus_law.nc", run=run.run) if run.sweep.focus == "law" else []
+        ),
+    output:
+        causes=update(expand("results/{run}/causes.nc", run=run.run)),
+        figures=update(
+            expand(
+                "results/{run}/figures/{figure}.{form}",
+                run=run.run,
+                figure=("causes", "spike"),
+                form=("png", "svg"),
+            )
+        ),
+    log:
+        f"results/{run.run}/logs/causes.log",
+    benchmark:
+        f"results/{run.run}/benchmarks/causes.tsv"
+    threads: workflow.cores
+    params:
+        made_from=of_stage("causes"),
+    message:
+        "Tell what makes the phase slope scatter, and spike"
+    script:
+        "workflow/scripts/causes.py"

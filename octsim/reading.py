@@ -64,6 +64,7 @@ def _read(stage: str, config: Config) -> tuple[str, ...]:
         "paths": ("spectrum.wavelength",),
         "phase_slope": ("processing", "scene.refractive_index.neuron"),
         "stability": (*traced, *_SPIRAL, "spectrum", "sweep"),
+        "causes": (*traced, "spectrum", "sweep", "processing"),
         "tradeoff": (
             "scene", "objective", "detector", "tracing", "spectrum", "focus_law", "sweep",
             "processing",
@@ -84,6 +85,7 @@ def _behind(stage: str, config: Config) -> tuple[str, ...]:
         "phase_slope": (*summed, "processing"),
         "gaussian_fits": law,
         "focus_law": law,
+        "causes": (*swept, *keys_read("causes", config)),
     }
     return behind.get(stage, _read(stage, config))
 

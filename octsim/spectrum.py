@@ -53,6 +53,18 @@ def _field(
     return real, imaginary
 
 
+def field(
+    amplitude: NDArray[np.float64],
+    optical_path_length: NDArray[np.float64],
+    wavenumber: NDArray[np.float64],
+) -> NDArray[np.complex128]:
+    """Sum the fields of rays at each wavenumber, (K,); parameters are those of `intensity`."""
+    num = wavenumber.size
+    step = (wavenumber[-1] - wavenumber[0]) / max(num - 1, 1)
+    real, imaginary = _field(amplitude, optical_path_length, wavenumber[0], step, num)
+    return real + 1j * imaginary
+
+
 def intensity(
     amplitude: NDArray[np.float64],
     optical_path_length: NDArray[np.float64],
@@ -79,10 +91,8 @@ def intensity(
     ndarray, shape (K,)
         Intensity; 1 is all of the launched light in phase.
     """
-    num = wavenumber.size
-    step = (wavenumber[-1] - wavenumber[0]) / max(num - 1, 1)
-    real, imaginary = _field(amplitude, optical_path_length, wavenumber[0], step, num)
-    squared: NDArray[np.float64] = real * real + imaginary * imaginary
+    total = field(amplitude, optical_path_length, wavenumber)
+    squared: NDArray[np.float64] = total.real * total.real + total.imag * total.imag
     return squared
 
 
