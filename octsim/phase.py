@@ -6,60 +6,14 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.config import Config, Processing
+from octsim.config import Config
 from octsim.datasets import make
 from octsim.plates import ideal_spectra, predicted_phase_slope
 from octsim.spectrum import wavenumbers
-
-
-def centred(intensity: NDArray[np.float64], centre: str) -> NDArray[np.float64]:
-    """Subtract from spectra (..., K) their midpoint (max + min)/2, or their mean."""
-    if centre == "midpoint":
-        level = (intensity.max(axis=-1) + intensity.min(axis=-1)) / 2
-    else:
-        level = intensity.mean(axis=-1)
-    without: NDArray[np.float64] = intensity - level[..., np.newaxis]
-    return without
-
-
-def windowed(intensity: NDArray[np.float64], window: str) -> NDArray[np.float64]:
-    """Multiply spectra (..., K) by a symmetric window of scipy.signal.windows."""
-    # half a second to import, which only those who need it should wait for
-    from scipy.signal import get_window
-
-    product: NDArray[np.float64] = intensity * get_window(
-        window, intensity.shape[-1], fftbins=False
-    )
-    return product
-
-
-def fourier_components(
-    intensity: NDArray[np.float64], processing: Processing
-) -> NDArray[np.complex128]:
-    """Take the discrete Fourier transform of spectra after centring and windowing (thesis §5).
-
-    Parameters
-    ----------
-    intensity : ndarray, shape (..., K)
-        Spectra over evenly spaced, increasing wavenumbers.
-    processing : Processing
-        What to subtract, and the window. The mean is subtracted last.
-
-    Returns
-    -------
-    ndarray, shape (..., K//2 + 1)
-        Complex components; a spectrum cos(2ndk) has phase 2nd k_min at its first sample.
-    """
-    prepared = windowed(centred(intensity, processing.centre), processing.window)
-    prepared -= prepared.mean(axis=-1, keepdims=True)
-    return np.fft.rfft(prepared, axis=-1)
-
-
-def optical_depths(wavenumber: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Optical depth nd (µm) at which cos(2ndk) falls on each component, shape (K//2 + 1,)."""
-    step = (wavenumber[-1] - wavenumber[0]) / (wavenumber.size - 1)
-    depths: NDArray[np.float64] = np.pi * np.fft.rfftfreq(wavenumber.size, step)
-    return depths
+from octsim.transform import centred as centred
+from octsim.transform import fourier_components as fourier_components
+from octsim.transform import optical_depths as optical_depths
+from octsim.transform import windowed as windowed
 
 
 class PhaseSlopes(NamedTuple):
