@@ -9,7 +9,15 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+)
 
 from octsim.units import Length
 
@@ -240,7 +248,8 @@ ParametricWindow = Annotated[
 
 
 def _depth_kind(value: object) -> str:
-    return "name" if value in ("nominal", "peak") else "length"
+    # a length has digits
+    return "name" if isinstance(value, str) and value.isalpha() else "length"
 
 
 def _window_kind(value: object) -> str:
@@ -294,17 +303,16 @@ class Processing(Section):
         "window, or a polynomial fitted with these weights",
     )
     centre_degree: Degree = _key(1, "of the polynomial, where that is the centre")
-    window: (
-        Annotated[
-            Annotated[Window, Tag("plain")] | Annotated[ParametricWindow, Tag("parametric")],
-            Discriminator(_window_kind),
-        ]
-    ) = _key(
+    window: Annotated[
+        Annotated[Window, Tag("plain")] | Annotated[ParametricWindow, Tag("parametric")],
+        Discriminator(_window_kind),
+    ] = _key(
         "hamming",
         "a symmetric window of scipy.signal.windows; with its parameters as [kaiser, 8.6]",
     )
     depth: Annotated[
-        Annotated[Literal["nominal", "peak"], Tag("name")] | Annotated[PositiveLength, Tag("length")],
+        Annotated[Literal["nominal", "peak"], Tag("name")]
+        | Annotated[PositiveLength, Tag("length")],
         Discriminator(_depth_kind),
     ] = _key(
         "nominal",

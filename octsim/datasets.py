@@ -26,6 +26,8 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "component_phase_slope": ("mrad/nm", "phase slope of each component"),
     "depth": ("um", "optical depth, half of the optical path difference"),
     "diameter": ("um", "diameter of the cylinder"),
+    "estimated_depth": ("um", "optical depth by the estimator"),
+    "estimated_phase": ("rad", "phase by the estimator, at the middle of the band"),
     "field_amplitude": ("1", "magnitude of the field at the middle of the band"),
     "field_phase": ("rad", "phase of the field at the middle of the band, in (-pi, pi]"),
     "focus": ("um", "height of the focus above the glass"),

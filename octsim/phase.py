@@ -1,6 +1,6 @@
 """From spectra to phases and the phase slope (figures 9 to 12)."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from octsim.config import Config
 from octsim.datasets import make
+from octsim.estimation import estimated
 from octsim.plates import ideal_spectra, predicted_phase_slope
 from octsim.spectrum import wavenumbers
 from octsim.transform import centred as centred
@@ -45,16 +46,41 @@ def phase_slopes(
     return PhaseSlopes(component, by_component, strongest)
 
 
+def slope_of(diameter: NDArray[np.float64], phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Differentiate phases (D,) over diameters (D,), by central differences once unwrapped."""
+    slope: NDArray[np.float64] = np.gradient(np.unwrap(phase), diameter)
+    return slope
+
+
+def estimated_slopes(transformed: xr.Dataset, of_components: PhaseSlopes) -> PhaseSlopes:
+    """Give the slopes of the estimator's phase in the place of the strongest component's.
+
+    Those of the components stay; a run by fft has no other phase, and all is as it was.
+    """
+    if "estimated_phase" not in transformed:
+        return of_components
+    diameter, phase = transformed["diameter"].values, transformed["estimated_phase"].values
+    return of_components._replace(strongest=slope_of(diameter, phase))
+
+
 def fourier(config: Config, spectra: xr.Dataset) -> xr.Dataset:
     """Take the Fourier transform of each spectrum.
 
     Returns
     -------
     Dataset
-        magnitude and phase (diameter, component), depth(component).
+        magnitude and phase (diameter, component), depth(component); and, of another estimator than
+        fft, estimated_phase and estimated_depth (diameter).
     """
     components = fourier_components(spectra["intensity"].values, config.processing)
     dimensions = ("diameter", "component")
+    found: dict[str, Any] = {}
+    if config.processing.estimator != "fft":
+        of_each = estimated(config, spectra)
+        found = {
+            "estimated_phase": ("diameter", of_each.phase),
+            "estimated_depth": ("diameter", of_each.depth),
+        }
     return make(
         "fourier",
         config,
@@ -62,6 +88,7 @@ def fourier(config: Config, spectra: xr.Dataset) -> xr.Dataset:
         {
             "magnitude": (dimensions, np.abs(components)),
             "phase": (dimensions, np.angle(components)),
+            **found,
         },
         {
             "diameter": spectra["diameter"].values,
@@ -83,7 +110,10 @@ def phase_slope(config: Config, transformed: xr.Dataset) -> xr.Dataset:
     """
     diameter, k = transformed["diameter"].values, wavenumbers(config.spectrum)
     n_neuron = config.scene.refractive_index.neuron
-    slopes = phase_slopes(diameter, transformed["magnitude"].values, transformed["phase"].values)
+    of_components = phase_slopes(
+        diameter, transformed["magnitude"].values, transformed["phase"].values
+    )
+    slopes = estimated_slopes(transformed, of_components)
     ideal = fourier_components(ideal_spectra(n_neuron, diameter, k), config.processing)
     ideals = phase_slopes(diameter, np.abs(ideal), np.angle(ideal))
     predicted = predicted_phase_slope(n_neuron, k[0], k[-1])

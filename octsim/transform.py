@@ -36,16 +36,12 @@ _CENTRES: Mapping[str, Callable[[Array, Array, int], Array]] = {
         (spectra.max(axis=-1, keepdims=True) + spectra.min(axis=-1, keepdims=True)) / 2
     ),
     "mean": lambda spectra, _, __: spectra.mean(axis=-1, keepdims=True),
-    "weighted": lambda spectra, weights, _: (
-        (spectra @ weights / weights.sum())[..., np.newaxis]
-    ),
+    "weighted": lambda spectra, weights, _: (spectra @ weights / weights.sum())[..., np.newaxis],
     "polynomial": _polynomial,
 }
 
 
-def centred(
-    intensity: Array, centre: str, window: Named = "boxcar", degree: int = 1
-) -> Array:
+def centred(intensity: Array, centre: str, window: Named = "boxcar", degree: int = 1) -> Array:
     """Subtract their centre from spectra.
 
     Parameters
@@ -73,11 +69,10 @@ def windowed(intensity: Array, window: Named) -> Array:
 
 def prepared(intensity: Array, processing: Processing) -> Array:
     """Centre spectra (..., K), multiply them by the window and subtract the mean that is left."""
-    level = centred(
-        intensity, processing.centre, processing.window, processing.centre_degree
-    )
+    level = centred(intensity, processing.centre, processing.window, processing.centre_degree)
     shaped = windowed(level, processing.window)
-    return shaped - shaped.mean(axis=-1, keepdims=True)
+    shaped -= shaped.mean(axis=-1, keepdims=True)
+    return shaped
 
 
 def fourier_components(intensity: Array, processing: Processing) -> NDArray[np.complex128]:

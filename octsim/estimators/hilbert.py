@@ -4,7 +4,7 @@ import numpy as np
 
 from octsim.config import Processing
 from octsim.estimators.estimate import Array, Estimate, middle
-from octsim.transform import optical_depths, prepared, window_samples
+from octsim.transform import optical_depths, prepared
 
 _ZEROS = 8
 """How many times as many samples are transformed, the rest of them zeros."""

@@ -70,7 +70,7 @@ def maximum_likelihood(intensity: Array, model: Model, read_noise: float = 0.0) 
         score = ((intensity + extra - expected) * change / expected).sum(axis=1)
         found = found + score / (change**2 / expected).sum(axis=1)
         found = np.clip(found, model.diameter[0], model.diameter[-1])
-    return found
+    return np.asarray(found)
 
 
 _TINY = 1e-9  # of the light, per sample: a dark fringe must not forbid a count

@@ -1,5 +1,6 @@
 """The phase of a least-squares sinusoid, by variable projection."""
 
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -14,11 +15,15 @@ DARKEST = 0.02
 """Least intensity that a weight is made of, over the mean: noise may fit less than none."""
 ROUNDS = 4
 """How often weights are made of the last fit; each gains a digit or two."""
-STEPS = 12
+STEPS = 10
 """Most Gauss–Newton steps of the depth."""
 _REACH = 0.1  # of the depth, that one step may move it
 _ONE_SERIES = 0.02  # spread of depths, over their mean, of a series at one diameter
 _CHUNK = 256  # spectra at a time: beyond that the columns leave the cache
+
+
+Weigh = Callable[[Array, Array, float], Array]
+"""From fitted and measured spectra and the read noise's variance to square roots of weights."""
 
 
 class Envelope(NamedTuple):
@@ -77,9 +82,7 @@ def _polynomials(wavenumber: Array, options: Options) -> Envelope:
     return Envelope(x ** np.arange(options.offset_degree + 1), amplitude.astype(complex))
 
 
-def _common(
-    intensity: Array, wavenumber: Array, depth: Array, processing: Processing
-) -> Envelope:
+def _common(intensity: Array, wavenumber: Array, depth: Array, processing: Processing) -> Envelope:
     """Fit polynomials to the mean of a series, and keep their shape."""
     options, mean_depth = processing.sinusoid, depth.mean(keepdims=True)
     if np.abs(depth - mean_depth).max() > _ONE_SERIES * mean_depth[0]:
@@ -97,6 +100,21 @@ def _common(
     return Envelope((powers.offset @ offset[0])[:, np.newaxis], shape[:, np.newaxis])
 
 
+def _shot(fitted: Array, intensity: Array, variance: float) -> Array:
+    """Give the square roots of the weights of counts that fitted spectra ask for, (D, K)."""
+    least = DARKEST * np.abs(intensity).mean(axis=1, keepdims=True) + np.finfo(float).tiny
+    roots: Array = 1 / np.sqrt(np.maximum(fitted, least) + variance)
+    return roots
+
+
+def _equal(fitted: Array, _: Array, __: float) -> Array:
+    """Give the same weight to every sample."""
+    return np.ones_like(fitted)
+
+
+_WEIGHTS: Mapping[str, Weigh] = {"shot": _shot, "equal": _equal}
+
+
 def _fit(
     intensity: Array,
     wavenumber: Array,
@@ -106,25 +124,65 @@ def _fit(
     envelope: Envelope,
 ) -> tuple[NDArray[np.complex128], Array, Array]:
     """Fit amplitudes (D, Q), offsets (D, P) and, if that is asked for, depths (D,)."""
-    rounds = ROUNDS if options.weights == "shot" else 0
+    fit = _FITS[options.depth]
+    return fit(intensity, wavenumber, depth, envelope, _WEIGHTS[options.weights], variance)
+
+
+def _held(
+    intensity: Array,
+    wavenumber: Array,
+    depth: Array,
+    envelope: Envelope,
+    weigh: Weigh,
+    variance: float,
+) -> tuple[NDArray[np.complex128], Array, Array]:
+    """Fit at held depths: complex amplitudes, whose slope makes up for a depth that is off."""
+    columns = _columns(_waves(wavenumber, depth, envelope), envelope)
+    found = _solve(columns, intensity, np.ones_like(intensity))
+    for _ in range(ROUNDS):
+        found = _solve(columns, intensity, weigh(_sum(columns, found), intensity, variance))
+    offsets, cosines = envelope.offset.shape[1], envelope.amplitude.shape[1]
+    cos, sin = found[:, offsets : offsets + cosines], found[:, offsets + cosines :]
+    return cos - 1j * sin, found[:, :offsets], depth
+
+
+def _fitted(
+    intensity: Array,
+    wavenumber: Array,
+    depth: Array,
+    envelope: Envelope,
+    weigh: Weigh,
+    variance: float,
+) -> tuple[NDArray[np.complex128], Array, Array]:
+    """Fit depths too: amplitudes of one phase, as a slope of the phase is the depth's.
+
+    The step of a depth is the part of one more column, the derivative to it, in a fit of all: all
+    else is projected out.
+    """
+    x = 2 * (wavenumber - middle(wavenumber))
+    offsets = envelope.offset.shape[1]
     root = np.ones_like(intensity)
-    x = wavenumber - middle(wavenumber)
-    for _ in range(STEPS if options.depth == "fitted" else 0):
-        columns = _columns(wavenumber, depth, envelope)
+    amplitude, offset, _ = _held(intensity, wavenumber, depth, envelope, weigh, variance)
+    for _ in range(STEPS):
+        turn = amplitude[:, :1] / np.abs(amplitude[:, :1])
+        waves = _waves(wavenumber, depth, envelope)
+        along = (turn[:, np.newaxis] * waves[..., 1:]).real
+        # amplitudes along the first one's phase
+        sloped = turn * (amplitude * turn.conj()).real
+        moved = -x * np.einsum("dkq,dq->dk", waves, sloped).imag
+        columns = np.concatenate(
+            [_columns(waves[..., :1], envelope), along, moved[..., np.newaxis]], axis=2
+        )
         found = _solve(columns, intensity, root)
-        # one more column, by the derivative to the depth: its part is all else's residual
-        amplitude, _ = _complex(found, envelope)
-        turned = 1j * np.einsum("dkq,dq->dk", _waves(wavenumber, depth, envelope), amplitude)
-        both = np.concatenate([columns, (2 * x * turned.real)[..., np.newaxis]], axis=2)
-        step = _solve(both, intensity, root)[:, -1]
+        first = found[:, offsets, np.newaxis] - 1j * found[:, offsets + 1, np.newaxis]
+        amplitude = np.concatenate([first, turn * found[:, offsets + 2 : -1]], axis=1)
+        offset, step = found[:, :offsets], found[:, -1]
+        root = weigh(_sum(columns, found), intensity, variance)
         depth = depth + np.clip(step, -_REACH * depth, _REACH * depth)
-        if rounds:
-            root = _roots(columns, found, intensity, variance)
-    columns = _columns(wavenumber, depth, envelope)
-    found = _solve(columns, intensity, root)
-    for _ in range(rounds):
-        found = _solve(columns, intensity, _roots(columns, found, intensity, variance))
-    return *_complex(found, envelope), depth
+    return amplitude, offset, depth
+
+
+_FITS = {"held": _held, "fitted": _fitted}
 
 
 def _waves(wavenumber: Array, depth: Array, envelope: Envelope) -> NDArray[np.complex128]:
@@ -132,18 +190,16 @@ def _waves(wavenumber: Array, depth: Array, envelope: Envelope) -> NDArray[np.co
     return oscillation(wavenumber, depth)[..., np.newaxis] * envelope.amplitude
 
 
-def _columns(wavenumber: Array, depth: Array, envelope: Envelope) -> Array:
+def _columns(waves: NDArray[np.complex128], envelope: Envelope) -> Array:
     """Give what the real linear parameters multiply, (D, K, P + 2Q)."""
-    waves = _waves(wavenumber, depth, envelope)
-    offset = np.broadcast_to(envelope.offset, (depth.size, *envelope.offset.shape))
+    offset = np.broadcast_to(envelope.offset, (waves.shape[0], *envelope.offset.shape))
     return np.concatenate([offset, waves.real, waves.imag], axis=2)
 
 
-def _complex(found: Array, envelope: Envelope) -> tuple[NDArray[np.complex128], Array]:
-    """Read amplitudes a − ib (D, Q) and offsets (D, P) from parameters of the columns."""
-    offsets, cosines = envelope.offset.shape[1], envelope.amplitude.shape[1]
-    cos, sin = found[:, offsets : offsets + cosines], found[:, offsets + cosines :]
-    return cos - 1j * sin, found[:, :offsets]
+def _sum(columns: Array, found: Array) -> Array:
+    """Give the spectra (D, K) that parameters (D, N) of the columns stand for."""
+    fitted: Array = (columns @ found[..., np.newaxis])[..., 0]
+    return fitted
 
 
 def _solve(columns: Array, intensity: Array, root: Array) -> Array:
@@ -152,11 +208,3 @@ def _solve(columns: Array, intensity: Array, root: Array) -> Array:
     projected = np.swapaxes(orthogonal, 1, 2) @ (intensity * root)[..., np.newaxis]
     found: Array = np.linalg.solve(triangle, projected)[..., 0]
     return found
-
-
-def _roots(columns: Array, found: Array, intensity: Array, variance: float) -> Array:
-    """Give the square roots of the weights that fitted spectra ask for, (D, K)."""
-    fitted = (columns @ found[..., np.newaxis])[..., 0]
-    least = DARKEST * np.abs(intensity).mean(axis=1, keepdims=True) + np.finfo(float).tiny
-    roots: Array = 1 / np.sqrt(np.maximum(fitted, least) + variance)
-    return roots

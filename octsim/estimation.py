@@ -1,0 +1,100 @@
+"""Phases of a run's spectra and of measured ones, by the estimator that the config names."""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from octsim.config import Config, Processing
+from octsim.errors import ConfigError
+from octsim.estimators import estimate
+from octsim.estimators.estimate import Estimate
+from octsim.estimators.likelihood import maximum_likelihood
+from octsim.measured import read_spectra
+from octsim.plates import predicted_phase_slope
+
+BEST = Processing.model_validate(
+    {"estimator": "sinusoid", "depth": "peak", "sinusoid": {"depth": "fitted"}}
+)
+"""What measured spectra are processed by, unless something else is asked for."""
+
+
+def estimated(config: Config, spectra: xr.Dataset) -> Estimate:
+    """Estimate the phases of a run's spectra by its ``processing.estimator``.
+
+    Those that know a diameter and no phase give the depth of that diameter, and the phase that the
+    thesis's prediction has for it: the slope of that is predicted_phase_slope · ∂d̂/∂d.
+
+    Parameters
+    ----------
+    config : Config
+        The run.
+    spectra : Dataset
+        Of the stage spectra: intensity(diameter, wavenumber) and focus(diameter).
+    """
+    diameter, k = spectra["diameter"].values, spectra["wavenumber"].values
+    n_neuron, intensity = config.scene.refractive_index.neuron, spectra["intensity"].values
+    if config.processing.estimator != "maximum_likelihood":
+        return estimate(intensity, k, n_neuron * diameter, config.processing)
+    # here, as a run of any other estimator needs no tracing any more
+    from octsim.modelled import modelled
+
+    model = modelled(config, diameter, spectra["focus"].values)
+    found = maximum_likelihood(intensity, model, config.processing.read_noise)
+    return Estimate(predicted_phase_slope(n_neuron, k[0], k[-1]) * found, n_neuron * found)
+
+
+def phase_of(
+    source: str | Path | xr.Dataset,
+    processing: Processing | None = None,
+    nominal_depth: float | None = None,
+) -> Estimate:
+    """Estimate the phases of measured spectra.
+
+    Parameters
+    ----------
+    source : path or Dataset
+        Spectra as `octsim.measured.read_spectra` takes them.
+    processing : Processing, optional
+        Which estimator, with which options; else the best phase of `snakemake estimators`, a
+        sinusoid whose depth is fitted from the highest peak on.
+    nominal_depth : float, optional
+        Optical depth n_neuron · diameter (µm) of all spectra, for ``depth: nominal``.
+
+    Returns
+    -------
+    Estimate
+        Phase at the middle of the band (rad, wrapped) and optical depth (µm) of each spectrum.
+
+    Raises
+    ------
+    ConfigError
+        If the processing needs a nominal depth that is not given, or modelled spectra.
+    FileError, DatasetError
+        If the spectra can't be read or used.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> k = np.linspace(7, 9.7, 500)
+    >>> spectra = xr.Dataset(
+    ...     {"intensity": ("wavenumber", 2 + np.cos(2 * 1.9 * (k - k.mean()) + 0.3))},
+    ...     {"wavenumber": ("wavenumber", k, {"units": "um-1"})},
+    ... )
+    >>> phase_of(spectra).phase.round(6).tolist()
+    [0.3]
+    """
+    processing = BEST if processing is None else processing
+    if processing.estimator == "maximum_likelihood":
+        raise ConfigError(
+            "processing.estimator: 'maximum_likelihood' given, which compares with modelled "
+            "spectra; use octsim.estimation.modelled and octsim.estimators.likelihood"
+        )
+    if processing.estimator != "fft" and processing.depth == "nominal" and nominal_depth is None:
+        raise ConfigError(
+            "processing.depth: 'nominal' given, but measured spectra have no diameter; give "
+            "'peak' or a length, or pass nominal_depth"
+        )
+    intensity, k = read_spectra(source)
+    nominal = np.full(intensity.shape[0], np.nan if nominal_depth is None else nominal_depth)
+    return estimate(intensity, k, nominal, processing)
