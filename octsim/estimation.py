@@ -8,7 +8,7 @@ import xarray as xr
 from octsim.config import Config, Processing
 from octsim.errors import ConfigError
 from octsim.estimators import estimate
-from octsim.estimators.estimate import Estimate
+from octsim.estimators.estimate import Array, Estimate
 from octsim.estimators.likelihood import maximum_likelihood
 from octsim.measured import read_spectra
 from octsim.plates import predicted_phase_slope
@@ -37,11 +37,22 @@ def estimated(config: Config, spectra: xr.Dataset) -> Estimate:
     if config.processing.estimator != "maximum_likelihood":
         return estimate(intensity, k, n_neuron * diameter, config.processing)
     # here, as a run of any other estimator needs no tracing any more
-    from octsim.modelled import modelled
+    from octsim.modelled import model_of_sweep
 
-    model = modelled(config, diameter, spectra["focus"].values)
+    model = model_of_sweep(config, spectra["focus"].values)
     found = maximum_likelihood(intensity, model, config.processing.read_noise)
     return Estimate(predicted_phase_slope(n_neuron, k[0], k[-1]) * found, n_neuron * found)
+
+
+def ideal_phases(config: Config, spectra: Array, diameter: Array, wavenumber: Array) -> Array:
+    """Estimate the phases (D,) of ideal spectra cos(2ndk), (D, K), on an offset of one.
+
+    Maximum likelihood, whose model they are not, has the prediction's.
+    """
+    n_neuron, processing = config.scene.refractive_index.neuron, config.processing
+    if processing.estimator == "maximum_likelihood":
+        return predicted_phase_slope(n_neuron, wavenumber[0], wavenumber[-1]) * diameter
+    return estimate(1 + spectra, wavenumber, n_neuron * diameter, processing).phase
 
 
 def phase_of(

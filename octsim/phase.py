@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from octsim.config import Config
 from octsim.datasets import make
-from octsim.estimation import estimated
+from octsim.estimation import estimated, ideal_phases
 from octsim.plates import ideal_spectra, predicted_phase_slope
 from octsim.spectrum import wavenumbers
 from octsim.transform import centred as centred
@@ -52,14 +52,15 @@ def slope_of(diameter: NDArray[np.float64], phase: NDArray[np.float64]) -> NDArr
     return slope
 
 
-def estimated_slopes(transformed: xr.Dataset, of_components: PhaseSlopes) -> PhaseSlopes:
-    """Give the slopes of the estimator's phase in the place of the strongest component's.
+def estimated_slopes(
+    of_components: PhaseSlopes, diameter: NDArray[np.float64], phase: NDArray[np.float64] | None
+) -> PhaseSlopes:
+    """Put the slope of an estimator's phase (D,), if it has one, in the strongest's place.
 
-    Those of the components stay; a run by fft has no other phase, and all is as it was.
+    Those of the components stay; fft has no phase but theirs.
     """
-    if "estimated_phase" not in transformed:
+    if phase is None:
         return of_components
-    diameter, phase = transformed["diameter"].values, transformed["estimated_phase"].values
     return of_components._replace(strongest=slope_of(diameter, phase))
 
 
@@ -110,12 +111,19 @@ def phase_slope(config: Config, transformed: xr.Dataset) -> xr.Dataset:
     """
     diameter, k = transformed["diameter"].values, wavenumbers(config.spectrum)
     n_neuron = config.scene.refractive_index.neuron
-    of_components = phase_slopes(
-        diameter, transformed["magnitude"].values, transformed["phase"].values
+    by_fft = config.processing.estimator == "fft"
+    slopes = estimated_slopes(
+        phase_slopes(diameter, transformed["magnitude"].values, transformed["phase"].values),
+        diameter,
+        None if by_fft else transformed["estimated_phase"].values,
     )
-    slopes = estimated_slopes(transformed, of_components)
-    ideal = fourier_components(ideal_spectra(n_neuron, diameter, k), config.processing)
-    ideals = phase_slopes(diameter, np.abs(ideal), np.angle(ideal))
+    spectra = ideal_spectra(n_neuron, diameter, k)
+    ideal = fourier_components(spectra, config.processing)
+    ideals = estimated_slopes(
+        phase_slopes(diameter, np.abs(ideal), np.angle(ideal)),
+        diameter,
+        None if by_fft else ideal_phases(config, spectra, diameter, k),
+    )
     predicted = predicted_phase_slope(n_neuron, k[0], k[-1])
     deviation = slopes.strongest - predicted
     largest = int(np.abs(deviation).argmax())

@@ -30,6 +30,9 @@ def keys_read(stage: str, config: Config) -> tuple[str, ...]:
         "spectra": ("spectrum", *(key for key in traced if key == "tracing.accuracy")),
         "phase_slope": ("processing", "scene.refractive_index.neuron"),
         "stability": (*traced, *_SPIRAL, "spectrum", "sweep"),
+        "estimators": (
+            *("scene", "objective", "detector", "tracing", "spectrum", "sweep", "processing"),
+        ),
         "tradeoff": (
             "scene",
             "objective",
