@@ -43,7 +43,9 @@ def from_trend(diameter: Array, slope: Array) -> Array:
     return residual
 
 
-def estimators(config: Config, law: xr.Dataset | None = None, threads: int = 1) -> xr.Dataset:
+def estimators(
+    config: Config, law: xr.Dataset | None = None, threads: int = 1, runs: int = RUNS
+) -> xr.Dataset:
     """Compare the estimators on a run's scene.
 
     Parameters
@@ -54,6 +56,8 @@ def estimators(config: Config, law: xr.Dataset | None = None, threads: int = 1) 
         Its fitted focus law, where ``sweep.focus`` is ``law``.
     threads : int
         For tracing and for the noisy spectra.
+    runs : int
+        Noisy spectra of each diameter, noise and ratio.
 
     Returns
     -------
@@ -84,10 +88,10 @@ def estimators(config: Config, law: xr.Dataset | None = None, threads: int = 1) 
         **true,
         **found,
         **bias,
-        **_noise(config, compared, band, foci, threads),
+        **_noise(config, compared, band, foci, threads, runs),
         **_misreadings(compared, band, diameter, model, scenes),
         "seed": SEED,
-        "noise_runs": RUNS,
+        "noise_runs": runs,
         "read_noise": READ_NOISE,
     }
     return make(
@@ -163,7 +167,12 @@ def _at_places(swept: Array) -> Array:
 
 
 def _noise(
-    config: Config, compared: dict[str, Processing], band: Band, foci: Array, threads: int
+    config: Config,
+    compared: dict[str, Processing],
+    band: Band,
+    foci: Array,
+    threads: int,
+    runs: int,
 ) -> dict[str, Any]:
     """Give the resolution of each estimator, the bound and the photons, over the ratios."""
     at = list(
@@ -180,7 +189,7 @@ def _noise(
 
         def measure(task: tuple[Point, float, tuple[int, ...]], sigma: float = read_noise) -> Any:
             point, ratio, seed = task
-            return resolution(point, band, compared, ratio, sigma, seed)
+            return resolution(point, band, compared, ratio, sigma, seed, runs)
 
         found |= _table(name, each(measure, tasks, threads), list(compared))
     return found

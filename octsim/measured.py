@@ -95,7 +95,7 @@ def _of_csv(path: Path) -> Measured:
     values = np.empty((len(rows), len(head)))
     for number, row in enumerate(rows):
         try:
-            values[number] = [float(cell) for cell in row]
+            values[number] = np.array([float(cell) for cell in row]).reshape(len(head))
         except ValueError:
             raise DatasetError(
                 f"{path}, row {number + 2}: {','.join(row)!r} given; write {len(head)} numbers"

@@ -70,6 +70,7 @@ def resolution(
     decibels: float,
     read_noise: float,
     seed: tuple[int, ...],
+    runs: int = RUNS,
 ) -> Resolution:
     """Draw noisy spectra of a diameter, and see how far off each estimator's diameter is.
 
@@ -90,10 +91,12 @@ def resolution(
         Standard deviation of a dark sample, in photons.
     seed : tuple of int
         Seed of the draws.
+    runs : int
+        Number of noisy spectra.
     """
     spectrum = point.spectra[2]
     photons = photons_for(spectrum, 10 ** (decibels / 10), read_noise)
-    bright = np.broadcast_to(spectrum, (RUNS, spectrum.size))
+    bright = np.broadcast_to(spectrum, (runs, spectrum.size))
     counts = measured_counts(bright, photons, read_noise, np.random.default_rng(seed))
     told = {
         name: processing.model_copy(update={"read_noise": read_noise})

@@ -35,7 +35,7 @@ def esprit(intensity: Array, wavenumber: Array, depth: Array, processing: Proces
     processing : Processing
         Its ``esprit.poles``.
     """
-    means, at = _block_means(intensity, wavenumber, depth)
+    means, at, within = _block_means(intensity, wavenumber, depth)
     poles = _poles(means, processing.esprit.poles)
     step = at[1] - at[0]
     # in logarithms, as a wild pole's powers overflow
@@ -49,14 +49,26 @@ def esprit(intensity: Array, wavenumber: Array, depth: Array, processing: Proces
     chosen = np.where(near, np.abs(amplitude), -1.0).argmax(axis=1)
     rows = np.arange(depth.size)
     found = near[rows, chosen]
+    # a mean over neighbours turns an exponential that grows or falls
+    turn = np.exp(np.multiply.outer(growth[rows, chosen], within)).mean(axis=1)
     return Estimate(
-        np.where(found, np.angle(amplitude[rows, chosen]), np.nan),
+        np.where(found, np.angle(amplitude[rows, chosen] / turn), np.nan),
         np.where(found, depths[rows, chosen], np.nan),
     )
 
 
-def _block_means(intensity: Array, wavenumber: Array, depth: Array) -> tuple[Array, Array]:
-    """Average neighbouring samples: means (D, N), and the wavenumbers (N,) they stand at."""
+def _block_means(intensity: Array, wavenumber: Array, depth: Array) -> tuple[Array, Array, Array]:
+    """Average neighbouring samples.
+
+    Returns
+    -------
+    means : ndarray, shape (D, N)
+        Their means.
+    at : ndarray, shape (N,)
+        Wavenumbers in the middle of each.
+    within : ndarray, shape (S,)
+        Places of the samples of one, from its middle.
+    """
     band = wavenumber[-1] - wavenumber[0]
     wanted = max(_BLOCKS, int(_PER_OSCILLATION * depth.max() * band / np.pi))
     size = max(1, wavenumber.size // wanted)
@@ -64,7 +76,8 @@ def _block_means(intensity: Array, wavenumber: Array, depth: Array) -> tuple[Arr
     used = slice((wavenumber.size - num * size) // 2, None)
     blocks = intensity[:, used][:, : num * size].reshape(-1, num, size)
     places = wavenumber[used][: num * size].reshape(num, size)
-    return blocks.mean(axis=2), places.mean(axis=1)
+    at = places.mean(axis=1)
+    return blocks.mean(axis=2), at, places[0] - at[0]
 
 
 def _poles(series: Array, num: int) -> NDArray[np.complex128]:
