@@ -7,6 +7,7 @@ import json
 import shutil
 from pathlib import Path
 
+import estimators_page
 import numpy as np
 import xarray as xr
 from pydantic import BaseModel
@@ -369,5 +370,7 @@ if __name__ == "__main__":
     (DOCS / "figures").mkdir(exist_ok=True)
     (DOCS / "stability.md").write_text(stability(), encoding="utf-8")
     (DOCS / "tradeoff.md").write_text(tradeoff(), encoding="utf-8")
-    for name in ("figure_12.png", "stability.png", "tradeoff.png"):
+    compared = xr.load_dataset(RESULTS / "estimators.nc")
+    (DOCS / "estimators.md").write_text(estimators_page.page(compared, table), encoding="utf-8")
+    for name in ("figure_12.png", "stability.png", "tradeoff.png", "estimators.png"):
         shutil.copy(RESULTS / "figures" / name, DOCS / "figures" / name)

@@ -20,7 +20,8 @@ def fringe(intensity: Array, wavenumber: Array, depth: Array, processing: Proces
 
     The two reflections have opposite signs, hence the π. The order m is the one nearest to the
     expected depth: even at a maximum, odd at a minimum. The extremum is that of a polynomial fitted
-    by least squares around it (fringe-order counting: Schnell, Gröschl and Dändliker 1996).
+    by least squares around it (as of fringes of equal chromatic order: Israelachvili 1973,
+    doi:10.1016/0021-9797(73)90218-X).
 
     Parameters
     ----------
