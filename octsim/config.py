@@ -10,40 +10,20 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import (
-    AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
     Discriminator,
     Field,
     Tag,
 )
 
+from octsim.processing import Processing as Processing
+from octsim.sections import Number, PositiveLength, Section
+from octsim.sections import key as _key
 from octsim.units import Length
 
-
-def _number(value: object) -> object:
-    # YAML 1.1 reads 1e-6 (no dot) as text; what is plainly a number in that notation is one.
-    if isinstance(value, str) and ("e" in value or "E" in value):
-        try:
-            return float(value)
-        except ValueError:
-            return value
-    return value
-
-
-Number = Annotated[float, BeforeValidator(_number), Field(allow_inf_nan=False)]
-PositiveLength = Annotated[Length, Field(ge=1e-6, le=1e6)]  # 1 pm to 1 m
 Position = Annotated[Length, Field(ge=-1e6, le=1e6)]
 Wavelength = Annotated[Length, Field(ge=1e-3, le=1e3)]  # 1 nm to 1 mm
 PositiveNumber = Annotated[Number, Field(ge=1e-6, le=1e6)]
 Index = Annotated[Number, Field(ge=1, le=10)]
-
-
-class Section(BaseModel):
-    """A part of the config: frozen, with no room for keys that it does not know."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, validate_default=True)
 
 
 class Range(Section):
@@ -78,11 +58,6 @@ class FractionRange(Range):
     start: Annotated[Number, Field(ge=-1e6, le=1e6)]
     stop: Annotated[Number, Field(ge=-1e6, le=1e6)]
     num: Annotated[int, Field(ge=4, le=1_000_000)]
-
-
-def _key(default: object, description: str) -> Any:
-    # typed Any: a default is written as a user would write it, "5 nm", and validated
-    return Field(default, description=description)
 
 
 class RefractiveIndex(Section):
@@ -217,114 +192,6 @@ class Sweep(Section):
         Annotated[Literal["law"], Tag("law")] | Annotated[FocusLine, Tag("line")],
         Discriminator(_focus_kind),
     ] = _key("law", "law (the fitted one), or {slope: 0.581, intercept: 69 nm}")
-
-
-Window = Literal[
-    "barthann", "bartlett", "blackman", "blackmanharris", "bohman", "boxcar", "cosine",
-    "flattop", "hamming", "hann", "lanczos", "nuttall", "parzen", "taylor", "triang", "tukey",
-]  # fmt: skip
-
-
-def _window(value: object) -> object:
-    # YAML and JSON know lists; a tuple can't be changed
-    return tuple(value) if isinstance(value, list) else value
-
-
-def _is_made(value: tuple[str | float, ...]) -> tuple[str | float, ...]:
-    # here, as it takes half a second to import and few windows have parameters
-    from scipy.signal import get_window
-
-    try:
-        if np.isfinite(get_window(value, 64, fftbins=False)).all():
-            return value
-    except (ValueError, TypeError, ArithmeticError) as error:
-        raise ValueError(f"scipy.signal has no such window: {error}") from None
-    raise ValueError("scipy.signal makes that window of values that are not finite")
-
-
-ParametricWindow = Annotated[
-    tuple[str | float, ...], BeforeValidator(_window), AfterValidator(_is_made)
-]
-
-
-def _depth_kind(value: object) -> str:
-    # a length has digits
-    return "name" if isinstance(value, str) and value.isalpha() else "length"
-
-
-def _window_kind(value: object) -> str:
-    return "parametric" if isinstance(value, list | tuple) else "plain"
-
-
-Degree = Annotated[int, Field(ge=0, le=8)]
-
-
-class Sinusoid(Section):
-    """The least-squares sinusoid: I = offset(k) + amplitude(k) · cos(2 z (k − k_mid) + phase)."""
-
-    offset_degree: Degree = _key(1, "of the polynomial below the oscillation")
-    amplitude_degree: Degree = _key(1, "of the polynomial that its amplitude is")
-    depth: Literal["held", "fitted"] = _key(
-        "held", "held at processing.depth, or fitted from there by variable projection"
-    )
-    weights: Literal["shot", "equal"] = _key(
-        "shot", "of a sample: one over its fitted intensity (and read noise), or the same for all"
-    )
-    envelope: Literal["each", "common"] = _key(
-        "each", "polynomials of each spectrum, or of the mean of a series at one diameter"
-    )
-
-
-class Hilbert(Section):
-    """The phase of the analytic signal: Fourier transform, band, inverse transform."""
-
-    band: Annotated[Number, Field(gt=0, le=1)] = _key(
-        0.5, "half width of the band of depths that is kept, over the depth"
-    )
-
-
-class Esprit(Section):
-    """ESPRIT: the spectrum as a sum of exponentials, one of them the oscillation."""
-
-    poles: Annotated[int, Field(ge=3, le=15)] = _key(
-        3, "number of exponentials; 3 are a real offset and the oscillation's two"
-    )
-
-
-class Processing(Section):
-    """From a spectrum to a phase."""
-
-    estimator: Literal[
-        "fft", "zero_padded", "sinusoid", "hilbert", "esprit", "fringe", "maximum_likelihood"
-    ] = _key("fft", "of the phase, or of the diameter; fft is the thesis's Fourier transform")
-    centre: Literal["midpoint", "mean", "weighted", "polynomial"] = _key(
-        "midpoint",
-        "what is subtracted before the window: (max + min)/2, the mean, the mean weighted by the "
-        "window, or a polynomial fitted with these weights",
-    )
-    centre_degree: Degree = _key(1, "of the polynomial, where that is the centre")
-    window: Annotated[
-        Annotated[Window, Tag("plain")] | Annotated[ParametricWindow, Tag("parametric")],
-        Discriminator(_window_kind),
-    ] = _key(
-        "hamming",
-        "a symmetric window of scipy.signal.windows; with its parameters as [kaiser, 8.6]",
-    )
-    depth: Annotated[
-        Annotated[Literal["nominal", "peak"], Tag("name")]
-        | Annotated[PositiveLength, Tag("length")],
-        Discriminator(_depth_kind),
-    ] = _key(
-        "nominal",
-        "optical depth z at which the phase is looked for, by all but fft: n_neuron · diameter, "
-        "the highest peak of each spectrum's zero-padded transform, or a length",
-    )
-    read_noise: Annotated[Number, Field(ge=0, le=1e12)] = _key(
-        0.0, "standard deviation of a dark sample, where spectra are counts of photons"
-    )
-    sinusoid: Sinusoid = Sinusoid()
-    hilbert: Hilbert = Hilbert()
-    esprit: Esprit = Esprit()
 
 
 class Config(Section):
