@@ -6,13 +6,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from octsim.config import Config, Processing
+from octsim.config import Config
 from octsim.contenders import COMMON, CONTENDERS, LIKELIHOOD, Band, contenders, slopes
 from octsim.datasets import make
 from octsim.estimators.estimate import Array, middle
 from octsim.estimators.likelihood import Model
 from octsim.mismatch import Other, likelihood_offset, misreading, others
 from octsim.modelled import MODEL_ACCURACY, model_of_sweep
+from octsim.processing import Processing
 from octsim.resolution import RATIOS, RUNS, Point, Resolution, point_of, resolution
 from octsim.settings import by_accuracy, by_rays
 from octsim.simulation import summer, tracer

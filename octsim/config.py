@@ -9,11 +9,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import (
-    Discriminator,
-    Field,
-    Tag,
-)
+from pydantic import Discriminator, Field, Tag
 
 from octsim.processing import Processing as Processing
 from octsim.sections import Number, PositiveLength, Section

@@ -5,12 +5,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from octsim.config import Config, Processing
+from octsim.config import Config
 from octsim.estimators import estimate
 from octsim.estimators.estimate import Array
 from octsim.estimators.likelihood import Model, maximum_likelihood
 from octsim.phase import phase_slopes, slope_of
 from octsim.plates import predicted_phase_slope
+from octsim.processing import Processing
 from octsim.transform import fourier_components
 
 LIKELIHOOD = "maximum_likelihood"

@@ -5,13 +5,14 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from octsim.config import Config, Processing
+from octsim.config import Config
 from octsim.errors import ConfigError
 from octsim.estimators import estimate
 from octsim.estimators.estimate import Array, Estimate
 from octsim.estimators.likelihood import maximum_likelihood
 from octsim.measured import read_spectra
 from octsim.plates import predicted_phase_slope
+from octsim.processing import Processing
 
 BEST = Processing.model_validate(
     {"estimator": "sinusoid", "depth": "peak", "sinusoid": {"depth": "fitted"}}

@@ -5,11 +5,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from octsim.config import Config, Processing
+from octsim.config import Config
 from octsim.contenders import Band, slopes
 from octsim.estimators.estimate import Array
 from octsim.estimators.likelihood import Model, maximum_likelihood
 from octsim.modelled import modelled
+from octsim.processing import Processing
 from octsim.settings import changed
 from octsim.units import format_length
 

@@ -5,12 +5,13 @@ from typing import NamedTuple
 import numpy as np
 
 from octsim.bound import derivative, diameter_bound
-from octsim.config import Config, Processing
+from octsim.config import Config
 from octsim.contenders import LIKELIHOOD, Band, series_phases
 from octsim.estimators.estimate import Array
 from octsim.estimators.likelihood import Model
 from octsim.modelled import modelled
 from octsim.noise import measured_counts, photons_for
+from octsim.processing import Processing
 from octsim.settings import changed
 
 RATIOS = (20.0, 30.0, 40.0, 50.0, 60.0)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.config import Processing
+from octsim.processing import Processing
 
 Array = NDArray[np.float64]
 Named = str | tuple[Any, ...]

@@ -4,13 +4,13 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from octsim.config import Processing
 from octsim.estimators.esprit import esprit
 from octsim.estimators.estimate import Array, Estimate
 from octsim.estimators.fringe import fringe
 from octsim.estimators.hilbert import hilbert
 from octsim.estimators.sinusoid import sinusoid
 from octsim.estimators.transformed import fft, peak_depths, zero_padded
+from octsim.processing import Processing
 
 Estimator = Callable[[Array, Array, Array, Processing], Estimate]
 

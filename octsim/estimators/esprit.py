@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.config import Processing
 from octsim.estimators.estimate import Array, Estimate, middle
+from octsim.processing import Processing
 
 _BLOCKS = 64
 """Fewest means of neighbouring samples that stand for a spectrum, where it has as many."""

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from octsim.config import Processing
 from octsim.estimators.estimate import Array, Estimate, middle, oscillation
+from octsim.processing import Processing
 from octsim.transform import prepared
 
 _DEGREE = 4

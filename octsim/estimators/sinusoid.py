@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.config import Processing
-from octsim.config import Sinusoid as Options
 from octsim.errors import OctsimError
 from octsim.estimators.estimate import Array, Estimate, middle, oscillation, place
+from octsim.processing import Processing
+from octsim.processing import Sinusoid as Options
 
 DARKEST = 0.02
 """Least intensity that a weight is made of, over the mean: noise may fit less than none."""

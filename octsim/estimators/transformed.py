@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from octsim.config import Processing
 from octsim.estimators.estimate import Array, Estimate, middle, oscillation
+from octsim.processing import Processing
 from octsim.transform import fourier_components, optical_depths, prepared
 
 _FINER = 32
