@@ -309,3 +309,23 @@ rule causes:
         "Tell what makes the phase slope scatter, and spike"
     script:
         "workflow/scripts/causes.py"
+rule estimators:
+    input:
+        # a given focus needs no law
+        focus_law=f"results/{run.run}/focus_law.nc" if run.sweep.focus == "law" else [],
+    output:
+        estimators=update(expand("results/{run}/estimators.nc", run=run.run)),
+        figures=update(
+            expand("results/{run}/figures/estimators.{form}", run=run.run, form=("png", "svg"))
+        ),
+    log:
+        f"results/{run.run}/logs/estimators.log",
+    benchmark:
+        f"results/{run.run}/benchmarks/estimators.tsv"
+    threads: workflow.cores
+    params:
+        made_from=of_stage("estimators"),
+    message:
+        "Compare the estimators of the phase"
+    script:
+        "workflow/scripts/estimators.py"

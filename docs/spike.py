@@ -10,7 +10,7 @@ from scipy.signal import find_peaks
 from tables import table
 
 from octsim.causes import weights
-from octsim.config import Processing
+from octsim.processing import Processing
 from octsim.spike import LEAKAGE
 
 _PEAK = 0.2  # mrad/nm: smaller ones are not listed

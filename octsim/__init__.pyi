@@ -4,11 +4,13 @@ from .errors import DatasetError as DatasetError
 from .errors import FileError as FileError
 from .errors import OctsimError as OctsimError
 from .errors import OctsimWarning as OctsimWarning
+from .estimation import phase_of as phase_of
 from .focus import focus_scan as focus_scan
 from .focus import focus_sweep as focus_sweep
 from .law import focus_law as focus_law
 from .law import gaussian_fits as gaussian_fits
 from .loading import load_config as load_config
+from .measured import read_spectra as read_spectra
 from .phase import fourier as fourier
 from .phase import phase_slope as phase_slope
 from .shares import light_paths as light_paths

@@ -98,7 +98,9 @@ def fields_at(
     """
     trace_at, k = tracer(config), wavenumbers(config.spectrum)
     points = list(zip(diameters.tolist(), foci.tolist(), strict=True))
-    found = Fields(*np.stack(list(each(lambda p: _summed(trace_at(*p), k), points, threads)), axis=1))
+    found = Fields(
+        *np.stack(list(each(lambda p: _summed(trace_at(*p), k), points, threads)), axis=1)
+    )
     for side in ("near", "far"):
         dark = ~getattr(found, side).any(axis=1)
         if dark.any():

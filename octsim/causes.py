@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.beats import Parts
-from octsim.config import Processing
-from octsim.phase import centred, windowed
 from octsim.pointwise import advance
+from octsim.processing import Processing
+from octsim.transform import centred, windowed
 
 Array = NDArray[np.float64]
 Causes = frozenset[str]

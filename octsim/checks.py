@@ -5,9 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 from pydantic import BaseModel
 
-from octsim.config import DECIMALS, Config, FocusLine, Range
+from octsim.config import Config, FocusLine
 from octsim.plates import aliasing_step
 from octsim.rounding import rounding_remarks
+from octsim.sections import DECIMALS, Range
 from octsim.units import format_length
 
 STEEP = 0.92

@@ -9,79 +9,23 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
+from pydantic import ConfigDict, Discriminator, Field, Tag
 
+from octsim.processing import Processing as Processing
+from octsim.sections import (
+    DiameterRange,
+    FocusRange,
+    FractionRange,
+    Index,
+    Number,
+    Position,
+    PositiveLength,
+    PositiveNumber,
+    Section,
+    Wavelength,
+)
+from octsim.sections import key as _key
 from octsim.units import Length
-
-
-def _number(value: object) -> object:
-    # YAML 1.1 reads 1e-6 (no dot) as text; what is plainly a number in that notation is one.
-    if isinstance(value, str) and ("e" in value or "E" in value):
-        try:
-            return float(value)
-        except ValueError:
-            return value
-    return value
-
-
-Number = Annotated[float, BeforeValidator(_number), Field(allow_inf_nan=False)]
-PositiveLength = Annotated[Length, Field(ge=1e-6, le=1e6)]  # 1 pm to 1 m
-Position = Annotated[Length, Field(ge=-1e6, le=1e6)]
-Wavelength = Annotated[Length, Field(ge=1e-3, le=1e3)]  # 1 nm to 1 mm
-PositiveNumber = Annotated[Number, Field(ge=1e-6, le=1e6)]
-Index = Annotated[Number, Field(ge=1, le=10)]
-
-
-DECIMALS = 12
-"""Of a micrometre, to which evenly spaced values are rounded: an attometre."""
-
-
-class Section(BaseModel):
-    """A part of the config: frozen, with no room for keys that it does not know."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, validate_default=True)
-
-
-class Range(Section):
-    """Evenly spaced values, both ends included; start is below stop."""
-
-    start: float
-    stop: float
-    num: Annotated[int, Field(ge=2, le=1_000_000)]
-
-    def values(self) -> NDArray[np.float64]:
-        """Give the values, shape (num,), in µm where they are lengths.
-
-        They are rounded far below a femtometre: a value that two ranges share has the same bits.
-        """
-        return np.round(np.linspace(self.start, self.stop, self.num), DECIMALS)
-
-
-class FocusRange(Range):
-    """Evenly spaced heights of the focus."""
-
-    start: Position
-    stop: Position
-
-
-class DiameterRange(Range):
-    """Evenly spaced diameters."""
-
-    start: PositiveLength
-    stop: PositiveLength
-
-
-class FractionRange(Range):
-    """Evenly spaced fractions of a diameter, enough to fit a Gaussian plus a constant over."""
-
-    start: Annotated[Number, Field(ge=-1e6, le=1e6)]
-    stop: Annotated[Number, Field(ge=-1e6, le=1e6)]
-    num: Annotated[int, Field(ge=4, le=1_000_000)]
-
-
-def _key(default: object, description: str) -> Any:
-    # typed Any: a default is written as a user would write it, "5 nm", and validated
-    return Field(default, description=description)
 
 
 class RefractiveIndex(Section):
@@ -216,22 +160,6 @@ class Sweep(Section):
         Annotated[Literal["law"], Tag("law")] | Annotated[FocusLine, Tag("line")],
         Discriminator(_focus_kind),
     ] = _key("law", "law (the fitted one), or {slope: 0.581, intercept: 69 nm}")
-
-
-Window = Literal[
-    "barthann", "bartlett", "blackman", "blackmanharris", "bohman", "boxcar", "cosine",
-    "flattop", "hamming", "hann", "lanczos", "nuttall", "parzen", "taylor", "triang", "tukey",
-]  # fmt: skip
-
-
-class Processing(Section):
-    """From a spectrum to a phase."""
-
-    estimator: Literal["fft"] = _key("fft", "the thesis's Fourier transform")
-    centre: Literal["midpoint", "mean"] = _key(
-        "midpoint", "what is subtracted before the window: (max + min)/2, or the mean"
-    )
-    window: Window = _key("hamming", "a symmetric window of scipy.signal.windows")
 
 
 class Grid(Section):

@@ -8,10 +8,11 @@ import numpy as np
 from pydantic import ValidationError
 
 from octsim.checks import impossible
-from octsim.config import DECIMALS, Config, Grid
+from octsim.config import Config, Grid
 from octsim.errors import ConfigError
 from octsim.grid import as_text, axes, combinations, config_at, overlap
 from octsim.problems import explain, known_keys, nearest_key
+from octsim.sections import DECIMALS
 from octsim.units import format_length, parse_length
 
 MOST = 100_000

@@ -8,61 +8,13 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from octsim.band import wavenumbers
-from octsim.config import Config, Processing
+from octsim.config import Config
+from octsim.estimation import estimator_of, ideal_phases
 from octsim.layout import Coordinate, Layout, points_per_block
 from octsim.parts import Part, Stage, Stream
 from octsim.plates import ideal_spectra, predicted_phase_slope
 from octsim.stored import Stored
-
-
-def centred(intensity: NDArray[np.float64], centre: str) -> NDArray[np.float64]:
-    """Subtract from spectra (..., K) their midpoint (max + min)/2, or their mean."""
-    if centre == "midpoint":
-        level = (intensity.max(axis=-1) + intensity.min(axis=-1)) / 2
-    else:
-        level = intensity.mean(axis=-1)
-    without: NDArray[np.float64] = intensity - level[..., np.newaxis]
-    return without
-
-
-def windowed(intensity: NDArray[np.float64], window: str) -> NDArray[np.float64]:
-    """Multiply spectra (..., K) by a symmetric window of scipy.signal.windows."""
-    # half a second to import, which only those who need it should wait for
-    from scipy.signal import get_window
-
-    product: NDArray[np.float64] = intensity * get_window(
-        window, intensity.shape[-1], fftbins=False
-    )
-    return product
-
-
-def fourier_components(
-    intensity: NDArray[np.float64], processing: Processing
-) -> NDArray[np.complex128]:
-    """Take the discrete Fourier transform of spectra after centring and windowing (thesis §5).
-
-    Parameters
-    ----------
-    intensity : ndarray, shape (..., K)
-        Spectra over evenly spaced, increasing wavenumbers.
-    processing : Processing
-        What to subtract, and the window. The mean is subtracted last.
-
-    Returns
-    -------
-    ndarray, shape (..., K//2 + 1)
-        Complex components; a spectrum cos(2ndk) has phase 2nd k_min at its first sample.
-    """
-    prepared = windowed(centred(intensity, processing.centre), processing.window)
-    prepared -= prepared.mean(axis=-1, keepdims=True)
-    return np.fft.rfft(prepared, axis=-1)
-
-
-def optical_depths(wavenumber: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Optical depth nd (µm) at which cos(2ndk) falls on each component, shape (K//2 + 1,)."""
-    step = (wavenumber[-1] - wavenumber[0]) / (wavenumber.size - 1)
-    depths: NDArray[np.float64] = np.pi * np.fft.rfftfreq(wavenumber.size, step)
-    return depths
+from octsim.transform import fourier_components, optical_depths
 
 
 class PhaseSlopes(NamedTuple):
@@ -122,6 +74,11 @@ def phase_slopes(
     return PhaseSlopes(component, by_component, strongest)
 
 
+def slope_of(diameter: NDArray[np.float64], phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Differentiate phases (D,) over diameters (D,), µm, by central differences."""
+    return gradient(turns(phase), diameter)
+
+
 @Stage
 def fourier(config: Config, spectra: xr.Dataset) -> Stream:
     """Take the Fourier transform of each spectrum.
@@ -129,7 +86,8 @@ def fourier(config: Config, spectra: xr.Dataset) -> Stream:
     Returns
     -------
     Dataset
-        magnitude and phase (diameter, component), depth(component).
+        magnitude and phase (diameter, component), depth(component); and, of another estimator than
+        fft, estimated_phase and estimated_depth (diameter).
     """
 
     def own(config: Config) -> dict[str, Coordinate]:
@@ -145,19 +103,33 @@ def fourier(config: Config, spectra: xr.Dataset) -> Stream:
     return Stream(layout, _transformed(layout, Stored(spectra, "spectra", config, layout)))
 
 
+def _by_components(config: Config) -> bool:
+    """Tell whether the phase is that of the components themselves."""
+    return config.processing.estimator == "fft"
+
+
 def _block_points(layout: Layout) -> int:
     return points_per_block(40 * layout.config.spectrum.samples)
 
 
 def _transformed(layout: Layout, stored: Stored) -> Iterator[Part]:
     dimensions = ("diameter", "component")
+    estimates = any(not _by_components(at.config) for at in layout.combinations)
     for at, span in layout.blocks(_block_points(layout)):
-        intensity = stored.part(at, span)["intensity"].values
+        part = stored.part(at, span)
+        intensity = part["intensity"].values
         components = fourier_components(intensity, at.config.processing)
-        variables = {
+        variables: dict[str, Any] = {
             "magnitude": (dimensions, np.abs(components)),
             "phase": (dimensions, np.angle(components)),
         }
+        if estimates:
+            if span.start == 0:
+                foci = stored.part(at, names=("focus",))["focus"].values
+                estimate = estimator_of(at.config, foci)
+            found = estimate(intensity, part["diameter"].values)
+            variables["estimated_phase"] = "diameter", found.phase
+            variables["estimated_depth"] = "diameter", found.depth
         yield Part(at, span.start, len(intensity), variables)
 
 
@@ -206,13 +178,18 @@ def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[
     diameter, k = part["diameter"].values, wavenumbers(config.spectrum)
     found = phase_slopes(diameter, part["magnitude"].values, part["phase"].values)
     n_neuron = config.scene.refractive_index.neuron
-    ideal = fourier_components(ideal_spectra(n_neuron, diameter, k), config.processing)
+    spectra = ideal_spectra(n_neuron, diameter, k)
+    ideal = fourier_components(spectra, config.processing)
     ideals = phase_slopes(diameter, np.abs(ideal), np.angle(ideal))
+    slope, ideal_slope = found.strongest, ideals.strongest
+    if not _by_components(config):
+        slope = slope_of(diameter, part["estimated_phase"].values)
+        ideal_slope = slope_of(diameter, ideal_phases(config, spectra, diameter, k))
     return {
-        "phase_slope": ("diameter", found.strongest[inner]),
+        "phase_slope": ("diameter", slope[inner]),
         "component": ("diameter", found.component[inner]),
         "component_phase_slope": (("diameter", "component"), found.by_component[inner]),
-        "ideal_phase_slope": ("diameter", ideals.strongest[inner]),
+        "ideal_phase_slope": ("diameter", ideal_slope[inner]),
         "ideal_component": ("diameter", ideals.component[inner]),
     }
 

@@ -37,11 +37,14 @@ def nearest_key(key: str) -> str:
     return difflib.get_close_matches(key, keys, n=1, cutoff=0)[0]
 
 
+_OF_TWO_KINDS = (["sweep", "focus"], ["processing", "window"], ["processing", "depth"])
+
+
 def explain(error: ErrorDetails) -> str:
     """Say in one line which key is wrong, what was given, and what to do."""
     place = [str(part) for part in error["loc"]]
-    if place[:2] == ["sweep", "focus"]:
-        del place[2:3]  # which of the two kinds it was read as
+    if place[:2] in _OF_TWO_KINDS:
+        del place[2:3]  # which of the two it was read as
     path = ".".join(place)
     if "." in place[-1] and error["type"] == "extra_forbidden":
         return f"{path}: unknown key; keys nest, so write {place[-1].replace('.', ': {')}: ...}}"

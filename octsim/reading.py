@@ -65,6 +65,9 @@ def _read(stage: str, config: Config) -> tuple[str, ...]:
         "phase_slope": ("processing", "scene.refractive_index.neuron"),
         "stability": (*traced, *_SPIRAL, "spectrum", "sweep"),
         "causes": (*traced, "spectrum", "sweep", "processing"),
+        "estimators": (
+            *("scene", "objective", "detector", "tracing", "spectrum", "sweep", "processing"),
+        ),
         "tradeoff": (
             "scene", "objective", "detector", "tracing", "spectrum", "focus_law", "sweep",
             "processing",

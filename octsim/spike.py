@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from octsim.band import wavenumbers
 from octsim.beats import Parts, fields_at, parts
 from octsim.causes import (
     ALL,
@@ -29,12 +30,11 @@ from octsim.causes import (
 )
 from octsim.config import Config, FocusLine
 from octsim.datasets import make
-from octsim.phase import centred
 from octsim.plates import aliasing_step, predicted_phase_slope
 from octsim.settings import by_accuracy
 from octsim.sides import beat_slopes
-from octsim.band import wavenumbers
 from octsim.sweep import sweep_foci
+from octsim.transform import centred
 
 Array = NDArray[np.float64]
 POINT = 1e-5

@@ -49,7 +49,11 @@ class Stored:
             self._shape = counts.shape
 
     def part(
-        self, at: Combination, points: slice | None = None, swept: str = "diameter"
+        self,
+        at: Combination,
+        points: slice | None = None,
+        swept: str = "diameter",
+        names: tuple[str, ...] = (),
     ) -> xr.Dataset:
         """Read what there is of a combination, which may be one of a finer grid.
 
@@ -61,6 +65,8 @@ class Stored:
             Some of the points along the swept dimension.
         swept : str
             That dimension.
+        names : tuple of str
+            Variables that are read; without any all are.
 
         Raises
         ------
@@ -73,7 +79,7 @@ class Stored:
         }
         file = self.dataset.encoding.get("source", self._stage)
         try:
-            part = self._own(place, points, swept).load()
+            part = self._own(place, points, swept, names).load()
         except (OSError, RuntimeError, ValueError) as error:
             raise DatasetError(
                 f"{file}: can't be read ({reason(error)}); move it away and run again"
@@ -88,20 +94,23 @@ class Stored:
                 )
         return part
 
-    def _own(self, place: dict[str, int], points: slice | None, swept: str) -> xr.Dataset:
-        one = self.dataset.isel(place).drop_vars(
-            [name for name, c in self.dataset.coords.items() if "config_key" in c.attrs]
+    def _own(
+        self, place: dict[str, int], points: slice | None, swept: str, names: tuple[str, ...]
+    ) -> xr.Dataset:
+        chosen = self.dataset[list(names)] if names else self.dataset
+        one = chosen.isel(place, missing_dims="ignore").drop_vars(
+            [name for name, c in chosen.coords.items() if "config_key" in c.attrs]
         )
         own = [str(d) for d in one.dims if str(d).endswith(OF_ITS_OWN)]
-        names = {dimension: dimension.removesuffix(OF_ITS_OWN) for dimension in own}
-        lengths = {d: slice(int(_there(one[name].values).sum())) for d, name in names.items()}
-        one = _renamed(one.isel(lengths), names) if names else one
+        plain = {dimension: dimension.removesuffix(OF_ITS_OWN) for dimension in own}
+        lengths = {d: slice(int(_there(one[name].values).sum())) for d, name in plain.items()}
+        one = _renamed(one.isel(lengths), plain) if plain else one
         if "ray" in one.dims:
             count = one.sizes[swept]
             row = int(np.ravel_multi_index(tuple(place.values()), self._shape[:-1])) if place else 0
-            chosen = range(count)[points or slice(None)]
+            asked = range(count)[points or slice(None)]
             first = row * self._shape[-1]
-            ends = self._ends[first + chosen.start], self._ends[first + chosen.stop]
+            ends = self._ends[first + asked.start], self._ends[first + asked.stop]
             one = one.isel(ray=slice(*map(int, ends)))
         return one if points is None else one.isel({swept: points})
 

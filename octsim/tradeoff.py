@@ -13,7 +13,7 @@ from octsim.datasets import make
 from octsim.focus import focus_sweep
 from octsim.frontier import COUNTED, TARGETS, comparison, efficient
 from octsim.law import focus_law, gaussian_fits
-from octsim.phase import fourier_components, phase_slopes
+from octsim.phase import phase_slopes
 from octsim.settings import (
     CONVERGED_SAMPLES,
     FINER,
@@ -29,6 +29,7 @@ from octsim.settings import (
 from octsim.simulation import summer, tracer
 from octsim.sweep import sweep_foci
 from octsim.threads import each
+from octsim.transform import fourier_components
 
 Array = NDArray[np.float64]
 Run = Callable[..., Any]

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 import octsim
+from octsim.band import wavenumbers
 from octsim.beats import Fields, Parts, fields_at, parts
 from octsim.causes import (
     ALL,
@@ -25,12 +26,12 @@ from octsim.causes import (
 from octsim.config import FocusLine, Processing
 from octsim.errors import OctsimError
 from octsim.loading import load_config
-from octsim.phase import fourier_components, phase_slopes
+from octsim.phase import phase_slopes
 from octsim.plates import predicted_phase_slope
 from octsim.pointwise import central_slope, slope_at_point
 from octsim.settings import by_accuracy
 from octsim.sides import beat_slopes
-from octsim.band import wavenumbers
+from octsim.transform import fourier_components
 
 Array = NDArray[np.float64]
 LINE = {"slope": 0.58, "intercept": "64 nm"}

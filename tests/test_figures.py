@@ -8,9 +8,9 @@ import xarray as xr
 from matplotlib.colors import to_rgb
 
 import octsim
-from octsim.config import Processing
 from octsim.figures import FIGURES
 from octsim.figures.style import component_colour, look, save
+from octsim.processing import Processing
 
 GRID = {"processing.window": ["hann", "hamming"], "processing.centre": ["mean", "midpoint"]}
 

@@ -5,7 +5,6 @@ import pytest
 import reference
 
 from octsim.band import wavenumbers
-from octsim.config import Processing
 from octsim.loading import load_config
 from octsim.phase import (
     centred,
@@ -15,6 +14,7 @@ from octsim.phase import (
     windowed,
 )
 from octsim.plates import ideal_spectra, predicted_phase_slope
+from octsim.processing import Processing
 
 CONFIG = load_config()
 K = wavenumbers(CONFIG.spectrum)

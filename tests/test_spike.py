@@ -9,13 +9,13 @@ import pytest
 import xarray as xr
 
 import octsim
+from octsim.band import wavenumbers
 from octsim.causes import CAUSES
 from octsim.config import Config
 from octsim.datasets import read, write
 from octsim.figures.causes import FIGURES
 from octsim.figures.style import look, save
 from octsim.loading import load_config
-from octsim.band import wavenumbers
 from octsim.spike import causes, summary
 
 ROOT = Path(__file__).parent.parent

@@ -132,6 +132,7 @@ EVERYTHING = {
 }  # fmt: skip
 FITTED = EVERYTHING - {"focus_scan"}
 SWEPT = {"detections", "spectra", "phase_slope", "figures"}
+PROCESSED = {"phase_slope", "figures"}
 # key: (edited value, what reruns under the fitted law, what reruns with a given focus)
 EDITS: dict[str, tuple[Any, set[str], set[str]]] = {
     "run": ("other", EVERYTHING, EVERYTHING),
@@ -157,14 +158,24 @@ EDITS: dict[str, tuple[Any, set[str], set[str]]] = {
     "focus_law.fraction": ({"num": 10}, FITTED, {"focus_sweep", "focus_law", "figures"}),
     "sweep.diameters": ({"num": 10}, SWEPT, SWEPT),
     "sweep.focus": ({"slope": 0.5, "intercept": "0.1 um"}, SWEPT, SWEPT),
-    "processing.estimator": (None, set(), set()),  # there is but one
-    "processing.centre": ("mean", {"phase_slope", "figures"}, {"phase_slope", "figures"}),
-    "processing.window": ("hann", {"phase_slope", "figures"}, {"phase_slope", "figures"}),
     "grid.combine": ("zip", set(), set()),
     "cache.file": ("other.sqlite", set(), set()),
     "cache.gigabytes": (1, set(), set()),
     "budget.cpu_hours": (2, set(), set()),
     "budget.disk_gigabytes": (21, set(), set()),
+    "processing.estimator": ("sinusoid", PROCESSED, PROCESSED),
+    "processing.centre": ("mean", PROCESSED, PROCESSED),
+    "processing.centre_degree": (2, PROCESSED, PROCESSED),
+    "processing.window": (["kaiser", 4.0], PROCESSED, PROCESSED),
+    "processing.depth": ("peak", PROCESSED, PROCESSED),
+    "processing.read_noise": (2.0, PROCESSED, PROCESSED),
+    "processing.sinusoid.offset_degree": (2, PROCESSED, PROCESSED),
+    "processing.sinusoid.amplitude_degree": (2, PROCESSED, PROCESSED),
+    "processing.sinusoid.depth": ("fitted", PROCESSED, PROCESSED),
+    "processing.sinusoid.weights": ("equal", PROCESSED, PROCESSED),
+    "processing.sinusoid.envelope": ("common", PROCESSED, PROCESSED),
+    "processing.hilbert.band": (0.4, PROCESSED, PROCESSED),
+    "processing.esprit.poles": (5, PROCESSED, PROCESSED),
 }
 
 

@@ -1,5 +1,7 @@
 """Figures 10 to 12: magnitude, phase and phase slope of the components over the diameter."""
 
+import json
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -60,6 +62,10 @@ def figure_12(slopes: xr.Dataset) -> Figure:
     _draw_components(
         axes, diameter.values, slopes["component"].values, slopes["component_phase_slope"]
     )
+    estimator = json.loads(slopes.attrs["config"])["processing"]["estimator"]
+    if estimator != "fft":
+        name = estimator.replace("_", " ")
+        axes.plot(diameter, slopes["phase_slope"], color=BLACK, linewidth=2, label=f"by {name}")
     axes.plot(
         diameter, slopes["ideal_phase_slope"],
         color=GREEN, linestyle="--", label="ideal spectrum cos(2ndk)",

@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from octsim.config import Processing
 from octsim.figures.style import BLUE, GREEN, SKY, component_colour, label, title
-from octsim.phase import centred, windowed
+from octsim.processing import Processing
+from octsim.transform import centred, windowed
 
 DIAMETER = 1.4
 """Diameter that the thesis shows, µm; the nearest of the sweep is drawn."""

@@ -1,0 +1,92 @@
+"""Estimators compared: their slopes, how these scatter, and what noise leaves of the diameter."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from octsim.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILION,
+    label,
+    title,
+)
+
+_DRAWN: Mapping[str, tuple[str, str]] = {
+    # estimator: colour, marker
+    "fft": (ORANGE, "s"),
+    "fringe": (PURPLE, "v"),
+    "sinusoid_plain": (SKY, "^"),
+    "sinusoid_fitted_depth": (BLUE, "o"),
+    "sinusoid_common_envelope": (VERMILION, "D"),
+    "maximum_likelihood": (GREEN, "x"),
+}
+
+
+def estimators_figure(compared: xr.Dataset) -> Figure:
+    """Draw slopes over the diameter, their scatter, and the resolution over the noise."""
+    figure = Figure(figsize=(13.5, 4.8))
+    slopes, scatter, noise = figure.subplots(1, 3)
+    _slopes(slopes, compared)
+    _scatter(scatter, compared)
+    _resolution(noise, compared)
+    figure.suptitle(title(compared, "Estimators of the phase"), fontsize=11)
+    handles, names = noise.get_legend_handles_labels()
+    figure.legend(handles, names, loc="outside lower center", ncols=4, fontsize=8)
+    return figure
+
+
+def _slopes(axes: Axes, compared: xr.Dataset) -> None:
+    """Draw the slopes by counted rays, and that of the light's own phase."""
+    diameter = compared["diameter"]
+    for name, (colour, _) in _DRAWN.items():
+        slope = compared["phase_slope"].sel(estimator=name)
+        if np.isfinite(slope).any():
+            axes.plot(diameter, slope, color=colour, linewidth=1.0)
+    axes.plot(diameter, compared["path_phase_slope"], color=BLACK, linestyle="--", linewidth=1.0)
+    axes.set_xlabel(label(diameter))
+    axes.set_ylabel(label(compared["phase_slope"], "phase slope, by counted rays"))
+
+
+def _scatter(axes: Axes, compared: xr.Dataset) -> None:
+    """Draw the scatter about the trend, of counted rays and of converged spectra."""
+    shown = compared.isel(estimator=np.isfinite(compared["scatter"]))
+    place = np.arange(shown.sizes["estimator"])
+    # below this it is rounding: of maximum likelihood on its own model
+    least = 1e-3
+    for off, name, colour, text in (
+        (-0.2, "scatter", ORANGE, "counted rays"),
+        (0.2, "converged_scatter", BLUE, "light paths"),
+    ):
+        axes.barh(place + off, np.maximum(shown[name], least), 0.4, color=colour, label=text)
+    axes.set_yticks(place, [str(one) for one in shown["estimator"].values], fontsize=7)
+    axes.invert_yaxis()
+    axes.set_xscale("log")
+    axes.set_xlim(left=least)
+    axes.set_xlabel(label(compared["scatter"], "scatter about the trend"))
+    axes.legend(fontsize=8)
+
+
+def _resolution(axes: Axes, compared: xr.Dataset) -> None:
+    """Draw the error of the diameter under shot noise over the ratio, and its bound."""
+    picometres = 1e6  # per µm
+    for name, (colour, marker) in _DRAWN.items():
+        error = picometres * compared["resolution"].sel(estimator=name)
+        axes.plot(
+            compared["snr"], error, color=colour, marker=marker, markersize=5, linewidth=1.0,
+            label=name,
+        )  # fmt: skip
+    axes.plot(
+        compared["snr"], picometres * compared["bound"], color=BLACK, linestyle="--",
+        label="Cramér–Rao bound; left, the light's own phase",
+    )  # fmt: skip
+    axes.set_yscale("log")
+    axes.set_xlabel(label(compared["snr"], "signal-to-noise ratio"))
+    axes.set_ylabel("Error of the diameter (pm)")

@@ -1,0 +1,55 @@
+"""The phase that light through the neuron gathers, from its paths: what estimators should find."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from octsim.light import Light
+from octsim.paths import path_name
+from octsim.phase import slope_of
+
+Array = NDArray[np.float64]
+
+
+def goes_through(light: Light) -> NDArray[np.bool_]:
+    """Tell which rays (D,) have been inside the cylinder."""
+    codes, path = np.unique(light.path, return_inverse=True)
+    inside = np.array(["CT" in path_name(code) for code in codes.tolist()], bool)
+    return inside[path]
+
+
+def path_phase(light: Light, wavenumber: float) -> float:
+    r"""Give the phase between the light that has been inside the cylinder and the rest, rad.
+
+    .. math:: \phi = \arg \sum_{\mathrm{inside}} E_j e^{ik\Lambda_j}
+        - \arg \sum_{\mathrm{not}} E_j e^{ik\Lambda_j}
+    """
+    inside = goes_through(light)
+    fields = light.amplitude * np.exp(1j * wavenumber * light.optical_path_length)
+    return float(np.angle(fields[inside].sum() * fields[~inside].sum().conj()))
+
+
+def mean_path_difference(light: Light) -> float:
+    """Give how much longer the mean path inside the cylinder is than the others', µm.
+
+    Means are weighted with the amplitudes' sizes.
+    """
+    inside, size = goes_through(light), np.abs(light.amplitude)
+    paths = [
+        float(np.average(light.optical_path_length[part], weights=size[part]))
+        for part in (inside, ~inside)
+    ]
+    return paths[0] - paths[1]
+
+
+def path_slopes(lights: Sequence[Light], diameter: Array, wavenumber: float) -> tuple[Array, Array]:
+    """Give the slopes over the diameter (D,), mrad/nm, of the path phase and of k · mean path.
+
+    The first is what a perfect estimate of the phase at that wavenumber has. The second is
+    geometry alone: it differs as rays of a focused beam, of unlike paths, add to a field whose
+    phase is not that of the mean path.
+    """
+    phase = np.array([path_phase(light, wavenumber) for light in lights])
+    mean = np.array([mean_path_difference(light) for light in lights])
+    return slope_of(diameter, phase), np.gradient(wavenumber * mean, diameter)
