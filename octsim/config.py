@@ -9,72 +9,23 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag
 
+from octsim.calibration_config import ActionPotential, Calibration, ExpansionConfig
+from octsim.sections import (
+    DiameterRange,
+    FocusRange,
+    FractionRange,
+    Index,
+    Number,
+    Position,
+    PositiveLength,
+    PositiveNumber,
+    Section,
+    Wavelength,
+)
+from octsim.sections import key as _key
 from octsim.units import Length
-
-
-def _number(value: object) -> object:
-    # YAML 1.1 reads 1e-6 (no dot) as text; what is plainly a number in that notation is one.
-    if isinstance(value, str) and ("e" in value or "E" in value):
-        try:
-            return float(value)
-        except ValueError:
-            return value
-    return value
-
-
-Number = Annotated[float, BeforeValidator(_number), Field(allow_inf_nan=False)]
-PositiveLength = Annotated[Length, Field(ge=1e-6, le=1e6)]  # 1 pm to 1 m
-Position = Annotated[Length, Field(ge=-1e6, le=1e6)]
-Wavelength = Annotated[Length, Field(ge=1e-3, le=1e3)]  # 1 nm to 1 mm
-PositiveNumber = Annotated[Number, Field(ge=1e-6, le=1e6)]
-Index = Annotated[Number, Field(ge=1, le=10)]
-
-
-class Section(BaseModel):
-    """A part of the config: frozen, with no room for keys that it does not know."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, validate_default=True)
-
-
-class Range(Section):
-    """Evenly spaced values, both ends included; start is below stop."""
-
-    start: float
-    stop: float
-    num: Annotated[int, Field(ge=2, le=1_000_000)]
-
-    def values(self) -> NDArray[np.float64]:
-        """Give the values, shape (num,), in µm where they are lengths."""
-        return np.linspace(self.start, self.stop, self.num)
-
-
-class FocusRange(Range):
-    """Evenly spaced heights of the focus."""
-
-    start: Position
-    stop: Position
-
-
-class DiameterRange(Range):
-    """Evenly spaced diameters."""
-
-    start: PositiveLength
-    stop: PositiveLength
-
-
-class FractionRange(Range):
-    """Evenly spaced fractions of a diameter, enough to fit a Gaussian plus a constant over."""
-
-    start: Annotated[Number, Field(ge=-1e6, le=1e6)]
-    stop: Annotated[Number, Field(ge=-1e6, le=1e6)]
-    num: Annotated[int, Field(ge=4, le=1_000_000)]
-
-
-def _key(default: object, description: str) -> Any:
-    # typed Any: a default is written as a user would write it, "5 nm", and validated
-    return Field(default, description=description)
 
 
 class RefractiveIndex(Section):
@@ -242,6 +193,9 @@ class Config(Section):
     focus_law: FocusLawConfig = FocusLawConfig()
     sweep: Sweep = Sweep()
     processing: Processing = Processing()
+    calibration: Calibration = Calibration()
+    expansion: ExpansionConfig = ExpansionConfig()
+    action_potential: ActionPotential = ActionPotential()
 
     def to_dict(self) -> dict[str, Any]:
         """Give the config as plain data that `load_config` reads back to the same bits."""

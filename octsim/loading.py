@@ -12,10 +12,11 @@ import yaml
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from octsim.config import PRESETS, Config, FocusLine, Range
+from octsim.config import PRESETS, Config, FocusLine
 from octsim.errors import ConfigError, OctsimWarning
 from octsim.plates import aliasing_step
 from octsim.rounding import rounding_remarks
+from octsim.sections import Range
 from octsim.units import format_length
 
 STEEP = 0.92
