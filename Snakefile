@@ -45,6 +45,8 @@ STAGES = (
     "phase_slope",
 )
 FIGURES = (*(f"figure_{number}" for number in (1, 6, 7, 8, 9, 10, 11, 12)), "paths")
+# a measured series is a file of the user's; one that is not there is said by the job
+SERIES = [file for file in [run.expansion.series] if file and Path(file).is_file()]
 LOCK = FileLock(f"results/{run.run}/.lock")  # held from the start of a run to its end
 SCRIPTS = Path(workflow.basedir) / "workflow" / "scripts"
 BENCHMARKS = Path(workflow.basedir) / "benchmarks"
@@ -272,3 +274,76 @@ rule tradeoff:
         "Measure error and cost, one setting after the other"
     script:
         "workflow/scripts/tradeoff.py"
+
+
+rule calibration:
+    input:
+        focus_law=(
+            f"results/{run.run}/focus_law.nc" if run.sweep.focus == "law" else []
+        ),
+    output:
+        calibration=update(expand("results/{run}/calibration.nc", run=run.run)),
+        figures=update(
+            expand("results/{run}/figures/calibration.{form}", run=run.run, form=("png", "svg"))
+        ),
+    log:
+        f"results/{run.run}/logs/calibration.log",
+    benchmark:
+        f"results/{run.run}/benchmarks/calibration.tsv"
+    threads: workflow.cores
+    params:
+        made_from=of_stage("calibration"),
+    message:
+        "Differentiate the phase over the diameter at a fixed focus and gap"
+    script:
+        "workflow/scripts/calibration.py"
+
+
+rule expansion:
+    input:
+        # without a series the job says so at once, and nothing is calibrated for it
+        series=SERIES,
+        calibration=f"results/{run.run}/calibration.nc" if SERIES else [],
+    output:
+        expansion=update(expand("results/{run}/expansion.nc", run=run.run)),
+        figures=update(
+            expand("results/{run}/figures/expansion.{form}", run=run.run, form=("png", "svg"))
+        ),
+    log:
+        f"results/{run.run}/logs/expansion.log",
+    benchmark:
+        f"results/{run.run}/benchmarks/expansion.tsv"
+    params:
+        made_from=of_stage("expansion"),
+    message:
+        "Turn a measured series of phases into nanometres"
+    script:
+        "workflow/scripts/expansion.py"
+
+
+rule action_potential:
+    input:
+        focus_law=(
+            f"results/{run.run}/focus_law.nc" if run.sweep.focus == "law" else []
+        ),
+        calibration=f"results/{run.run}/calibration.nc",
+    output:
+        action_potential=update(expand("results/{run}/action_potential.nc", run=run.run)),
+        figures=update(
+            expand(
+                "results/{run}/figures/action_potential.{form}",
+                run=run.run,
+                form=("png", "svg"),
+            )
+        ),
+    log:
+        f"results/{run.run}/logs/action_potential.log",
+    benchmark:
+        f"results/{run.run}/benchmarks/action_potential.tsv"
+    threads: workflow.cores
+    params:
+        made_from=of_stage("action_potential"),
+    message:
+        "Simulate an action potential and recover it"
+    script:
+        "workflow/scripts/action_potential.py"

@@ -7,6 +7,12 @@ from octsim.config import Config
 
 _SPIRAL = ("tracing.rays", "tracing.min_amplitude")
 
+# spectra as accurate as small steps need, whatever the run's scheme
+_CALIBRATED = (
+    "scene", "objective", "detector", "tracing.max_intersections", "spectrum", "processing",
+    "calibration", "sweep.focus",
+)  # fmt: skip
+
 
 def instrument(config: Config) -> tuple[str, ...]:
     """Give the keys that every stage reads that traces."""
@@ -30,6 +36,9 @@ def keys_read(stage: str, config: Config) -> tuple[str, ...]:
         "spectra": ("spectrum", *(key for key in traced if key == "tracing.accuracy")),
         "phase_slope": ("processing", "scene.refractive_index.neuron"),
         "stability": (*traced, *_SPIRAL, "spectrum", "sweep"),
+        "calibration": _CALIBRATED,
+        "expansion": ("expansion",),
+        "action_potential": (*_CALIBRATED, "action_potential"),
         "tradeoff": (
             "scene",
             "objective",
@@ -47,14 +56,19 @@ def keys_read(stage: str, config: Config) -> tuple[str, ...]:
 def keys_behind(stage: str, config: Config) -> tuple[str, ...]:
     """Give the keys that a stage's dataset depends on: its own and those of stages before it."""
     law = keys_read("focus_sweep", config)
-    swept = (*keys_read("detections", config), *(law if config.sweep.focus == "law" else ()))
+    lawful = law if config.sweep.focus == "law" else ()
+    swept = (*keys_read("detections", config), *lawful)
     summed = (*swept, *keys_read("spectra", config))
+    calibrated = (*_CALIBRATED, *lawful)
     behind = {
         "detections": swept,
         "spectra": summed,
         "paths": summed,
         "fourier": (*summed, "processing"),
         "phase_slope": (*summed, "processing"),
+        "calibration": calibrated,
+        "expansion": (*calibrated, "expansion"),
+        "action_potential": (*calibrated, "action_potential"),
         "gaussian_fits": law,
         "focus_law": law,
     }
