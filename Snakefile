@@ -278,9 +278,7 @@ rule tradeoff:
 
 rule calibration:
     input:
-        focus_law=(
-            f"results/{run.run}/focus_law.nc" if run.sweep.focus == "law" else []
-        ),
+        focus_law=(f"results/{run.run}/focus_law.nc" if run.sweep.focus == "law" else []),
     output:
         calibration=update(expand("results/{run}/calibration.nc", run=run.run)),
         figures=update(
@@ -323,9 +321,7 @@ rule expansion:
 
 rule action_potential:
     input:
-        focus_law=(
-            f"results/{run.run}/focus_law.nc" if run.sweep.focus == "law" else []
-        ),
+        focus_law=(f"results/{run.run}/focus_law.nc" if run.sweep.focus == "law" else []),
         calibration=f"results/{run.run}/calibration.nc",
     output:
         action_potential=update(expand("results/{run}/action_potential.nc", run=run.run)),

@@ -22,7 +22,7 @@ DURATION = 1e-3
 """Of the action potential at half its height, s (docs/calibration.md cites measured ones)."""
 INTERVAL = 50e-6
 """From one spectrum to the next, s: 20 000 a second, as line cameras do."""
-SAMPLES = 200
+SAMPLES = 201
 REST = 60
 """Spectra that are taken for those at rest."""
 

@@ -79,7 +79,8 @@ def moved(config: Config, changes: Mapping[str, float], law_slope: float) -> Pla
     focus = law_slope * diameter + changes.get("focus", 0.0)
     data, overlay = config.to_dict(), {}
     for name, by in changes.items():
-        key, value = PARAMETERS[name].key, value_of(config, name) + by
+        key, least = PARAMETERS[name].key, PARAMETERS[name].least
+        value = max(least, value_of(config, name) + by)  # whatever the last digit is rounded to
         if name == "detector_radius":
             value *= 2 * config.objective.magnification
         if key:

@@ -85,18 +85,21 @@ def round_trips(
     exact, grown = converged(config), config.action_potential.expansion
     diameters = trip_diameters(config)
     line = focus_line(config, law)
-    as_believed = instrument(exact)
+    foci = line.at(diameters)
+    believed = [
+        _pair(instrument(exact), Place(exact, 0.0, 0.0), diameter, focus, grown)
+        for diameter, focus in zip(diameters.tolist(), foci.tolist(), strict=True)
+    ]
     seeds = np.random.SeedSequence(config.action_potential.seed).spawn(diameters.size * TRIALS)
 
     def trip(number: int) -> list[Expansion]:
         generator = np.random.default_rng(seeds[number])
-        diameter = float(diameters[number // TRIALS])
-        focus = line.slope * diameter + line.intercept
-        believed = _pair(as_believed, Place(exact, 0.0, 0.0), diameter, focus, grown)
+        at = number // TRIALS
+        diameter, focus = float(diameters[at]), float(foci[at])
         place = drawn(exact, generator, line.slope)
         other = _pair(instrument(place.config), place, diameter, focus, grown)
         return [
-            _recover(config, calibration, believed, diameter, generator)._replace(
+            _recover(config, calibration, believed[at], diameter, generator)._replace(
                 systematic_error=np.zeros(())
             ),
             _recover(config, calibration, other, diameter, None),

@@ -113,7 +113,7 @@ def _scale(path: Path, name: str, units: str | None) -> float:
 
 def _csv(path: Path) -> dict[str, Array]:
     lines = (line.split("#")[0] for line in path.read_text(encoding="utf-8-sig").splitlines())
-    heading, *rows = csv.reader(line for line in lines if line.strip()) or [[]]
+    heading, *rows = list(csv.reader(line for line in lines if line.strip())) or [[]]
     found = [_HEADING.fullmatch(cell) for cell in heading]
     units = {match[1]: match[2] for match in found if match}
     places = {match[1]: place for place, match in enumerate(found) if match}

@@ -45,7 +45,7 @@ def sinusoid_phase(spectra: Array, wavenumber: Array, depth: float) -> Array:
     u = (wavenumber - middle) / (wavenumber[-1] - middle)
     cos, sin = (turn(2 * depth * (wavenumber - middle)) for turn in (np.cos, np.sin))
     terms = np.stack((cos, -sin, u * cos, u * sin, np.ones_like(u), u), axis=1)
-    real, imaginary = np.linalg.lstsq(terms, spectra.T, rcond=None)[0][:2]
+    real, imaginary = np.linalg.pinv(terms)[:2] @ spectra.T
     phases: Array = np.arctan2(imaginary, real)
     return phases
 

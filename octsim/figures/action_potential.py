@@ -48,6 +48,8 @@ def _draw_errors(axes: Axes, fired: xr.Dataset) -> None:
         )  # fmt: skip
     axes.set_xlabel("Time (ms)")
     axes.set_ylabel("Error of the change of the diameter (pm)")
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.35 * (high - low))  # room for the legend
     axes.legend(fontsize=8)
 
 
@@ -69,4 +71,6 @@ def _draw_diameters(axes: Axes, table: xr.Dataset) -> None:
     axes.axhline(0, color=BLUE, label="calibrated")
     axes.set_xlabel("Diameter at rest (µm)")
     axes.set_ylabel("Error of the expansion (%)")
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.3 * (high - low))
     axes.legend(fontsize=8)
