@@ -44,7 +44,7 @@ format: .venv/dev
 	$(BIN)/snakefmt Snakefile
 
 docs: results .venv/dev
-	$(BIN)/snakemake stability tradeoff --cores $(CORES)
+	$(BIN)/snakemake stability tradeoff calibration action_potential --cores $(CORES)
 	$(BIN)/python docs/generate.py
 
 .venv/bin/python:

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from calibrated import calibration_page
+from markdown import table
 from pydantic import BaseModel
 
 import octsim
@@ -24,12 +26,6 @@ SUMMARY = (
     "mean_phase_slope", "phase_slope_standard_deviation", "standard_deviation_from_ideal",
     "largest_deviation", "largest_deviation_diameter",
 )  # fmt: skip
-
-
-def table(head: list[str], rows: list[list[str]]) -> str:
-    """Write a Markdown table."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 
 
 def summary(law: xr.Dataset, slopes: xr.Dataset) -> list[str]:
@@ -369,5 +365,7 @@ if __name__ == "__main__":
     (DOCS / "figures").mkdir(exist_ok=True)
     (DOCS / "stability.md").write_text(stability(), encoding="utf-8")
     (DOCS / "tradeoff.md").write_text(tradeoff(), encoding="utf-8")
-    for name in ("figure_12.png", "stability.png", "tradeoff.png"):
+    (DOCS / "calibration.md").write_text(calibration_page(RESULTS), encoding="utf-8")
+    drawn = ("figure_12", "stability", "tradeoff", "calibration", "action_potential")
+    for name in (f"{figure}.png" for figure in drawn):
         shutil.copy(RESULTS / "figures" / name, DOCS / "figures" / name)

@@ -10,10 +10,11 @@ from scipy.interpolate import CubicSpline
 from octsim.config import Config, FocusLine
 from octsim.datasets import flags, make
 from octsim.differences import FRACTIONS, Array, derivative, stencil
-from octsim.light import AccuracyStatus
+from octsim.light import AccuracyStatus, Light
 from octsim.parameters import PARAMETERS, moved, offsets_of
 from octsim.plates import predicted_phase_slope
 from octsim.settings import by_accuracy, by_rays
+from octsim.sides import side_slopes
 from octsim.simulation import summer, tracer
 from octsim.spectrum import wavenumbers
 from octsim.steady import ESTIMATORS, PhaseOf, fourier_phase, phase_change
@@ -21,7 +22,7 @@ from octsim.sweep import sweep_foci
 from octsim.threads import each
 
 ACCURACY = 1e-8
-"""Of the spectra: 1e-6 moves slopes over steps of 0.1 nm by up to 2e-4 mrad/nm, this by below 1e-5."""
+"""Of the spectra: 1e-6 moves slopes over 0.1 nm by up to 2e-4 mrad/nm, this by less than 1e-5."""
 RAYS = 3000
 """The thesis's rays, whose slope over such steps is stored beside, to compare."""
 _CURVATURE_STEP = 4e-3
@@ -87,9 +88,10 @@ def calibration(config: Config, law: xr.Dataset | None = None, threads: int = 1)
     -------
     Dataset
         Over the diameter: fixed_focus_phase_slope with its systematic standard error, its inverse
-        diameter_per_phase and phase_curvature; the slope whose focus follows, and the thesis's
-        Fourier transform's, beside; sensitivities to each parameter and what its tolerance makes
-        of it, budget(diameter, parameter), with the error of the finite differences.
+        diameter_per_phase and phase_curvature; the slope whose focus follows, the thesis's Fourier
+        transform's and those of each side's light by itself, beside; sensitivities to each
+        parameter and what its tolerance makes of it, budget(diameter, parameter), with the error of
+        the finite differences.
 
     Raises
     ------
@@ -110,6 +112,7 @@ def calibration(config: Config, law: xr.Dataset | None = None, threads: int = 1)
 class _Bench(NamedTuple):
     """The instrument as it is, and as it is when each parameter is moved."""
 
+    trace_at: Callable[[float, float], Light]
     own: Instrument
     rays: Instrument
     offsets: dict[str, Array]
@@ -123,6 +126,7 @@ def _bench(exact: Config, law_slope: float) -> _Bench:
         for name, changes in offsets.items()
     }
     return _Bench(
+        tracer(exact),
         instrument(exact),
         instrument(by_rays(exact, RAYS)),
         offsets,
@@ -176,7 +180,9 @@ def _measure(
         name: derivative(bench.offsets[name], of_one)
         for name, of_one in zip(PARAMETERS, moved_slopes, strict=True)
     }
+    sides = side_slopes(bench.trace_at, diameter, focus, float((k[0] + k[-1]) / 2), step)
     return {
+        **{f"{side}_side_phase_slope": slope for side, slope in sides.items()},
         "fixed_focus_phase_slope": fixed.value,
         "difference_error": fixed.error,
         "following_phase_slope": following.value,

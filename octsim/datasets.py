@@ -139,6 +139,8 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "focus_phase_slope": ("mrad/nm", "change of the phase with the focus"),
     "fft_fixed_focus_phase_slope": ("mrad/nm", "phase slope at a fixed focus, of the fft"),
     "fft_following_phase_slope": ("mrad/nm", "phase slope if the focus follows, of the fft"),
+    "near_side_phase_slope": ("mrad/nm", "change of the phase of the near side's light by itself"),
+    "far_side_phase_slope": ("mrad/nm", "change of the phase of the far side's light by itself"),
     "rays_phase_slope": ("mrad/nm", "phase slope at a fixed focus, by 3000 rays"),
     "parameter": ("1", "what may differ from what is believed"),
     "budget": ("mrad/nm", "standard error of the phase slope by a parameter's tolerance"),

@@ -17,11 +17,14 @@ from octsim.differences import derivative, stencil
 from octsim.errors import DatasetError, OctsimError
 from octsim.figures.calibration import calibration_figure
 from octsim.figures.style import look, save
+from octsim.light import AccuracyStatus, Light
 from octsim.loading import load_config
 from octsim.parameters import PARAMETERS, drawn, moved, offsets_of, value_of
+from octsim.paths import path_name
 from octsim.phase import fourier_components
 from octsim.plates import ideal_spectra, predicted_phase_slope
 from octsim.settings import by_rays, changed
+from octsim.sides import SIDES, path_field, side_slopes
 from octsim.simulation import summer, tracer
 from octsim.spectrum import wavenumbers
 from octsim.steady import fourier_phase, phase_change, sinusoid_phase
@@ -164,6 +167,28 @@ def test_the_slopes_of_the_neuron_obey_the_chain_rule(calibrated: xr.Dataset) ->
     ratio = calibrated["fixed_focus_phase_slope"] / calibrated["following_phase_slope"]
     assert (ratio > 1.02).all()
     assert (calibrated["difference_error"] < 1e-4).all()
+
+
+def test_the_slope_is_what_the_two_sides_do_by_themselves(calibrated: xr.Dataset) -> None:
+    apart = calibrated["far_side_phase_slope"] - calibrated["near_side_phase_slope"]
+    slope = calibrated["fixed_focus_phase_slope"]
+    assert apart.values == pytest.approx(slope.values, rel=0.01)
+    # the side that stays where it is moves its phase too, unlike that of a plate
+    assert (calibrated["near_side_phase_slope"] < -0.3).all()
+
+
+def test_the_light_of_a_plates_side_has_the_phase_of_its_path() -> None:
+    def trace_at(diameter: float, focus: float) -> Light:  # noqa: ARG001
+        # PT CR PT twice, and PT CT CR CT PT
+        lengths = np.array([1.0, 1.0, 1.0 + 2 * N * diameter])
+        codes = np.array([89, 89, 1517])
+        ones = np.ones(3)
+        return Light(codes, ones, ones, lengths, 0.0, 3, AccuracyStatus.REACHED)
+
+    assert [path_name(code) for code in (89, 1517)] == list(SIDES.values())
+    found = side_slopes(trace_at, 1.4, 0.8, 8.0, 1e-4)
+    assert found == pytest.approx({"near": 0.0, "far": 16 * N})
+    assert path_field(trace_at(1.4, 0.8), "PR", 8.0) == 0
 
 
 def test_many_counted_rays_and_a_larger_step_give_the_same_slope(calibrated: xr.Dataset) -> None:
