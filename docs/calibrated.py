@@ -172,8 +172,8 @@ would have said {thesis_example}.
 ```
 
 ```python
-calibration = octsim.calibration(config, law)    # or xarray.open_dataset("calibration.nc")
-octsim.expansion(0.011, 1.4, calibration)        # rad, µm: nm, with both errors
+calibration = octsim.calibration(config, law)  # or xarray.open_dataset("calibration.nc")
+octsim.expansion(0.011, 1.4, calibration)  # rad, µm: nm, with both errors
 ```
 
 ![The slope and its error](figures/calibration.png)
