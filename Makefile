@@ -82,7 +82,7 @@ bench-peers: .venv-peers/run
 	touch $@
 
 kills: .venv/dev
-	OCTSIM_KILLS=30 $(BIN)/pytest -n 2 tests/test_kill.py -k killed
+	OCTSIM_KILLS=30 $(BIN)/pytest -n 2 tests/test_kill.py tests/test_cache.py -k killed
 
 clean:
 	rm -rf .venv .venv-peers results .snakemake

@@ -16,14 +16,21 @@ from filelock import FileLock, Timeout
 from octsim.config import Config
 from octsim.errors import OctsimError
 from octsim.files import require_folder
-from octsim.loading import load_config, remarks
+from octsim.estimates import check_budget, expected
+from octsim.gallery import figures_of
+from octsim.grid import remarks
+from octsim.loading import load_config
 from octsim.provenance import source_digest
-from octsim.reading import keys_read, parts_of
+from octsim.reading import keys_read, needs_law, parts_of
 
 try:
     # the files themselves too, as snakemake's own reading lets a key stand twice
     run = load_config(*workflow.configfiles, config)
     require_folder(Path(f"results/{run.run}"))
+    estimate = expected(run)
+    if estimate.is_large:
+        print(f"octsim: {estimate}", file=sys.stderr)
+    check_budget(run, estimate, Path(f"results/{run.run}"))
 except OctsimError as error:
     sys.exit(f"octsim: {error}")
 if run.run == Config().run and run != Config():
@@ -44,7 +51,7 @@ STAGES = (
     "fourier",
     "phase_slope",
 )
-FIGURES = (*(f"figure_{number}" for number in (1, 6, 7, 8, 9, 10, 11, 12)), "paths")
+FIGURES = figures_of(run)
 # a measured series is a file of the user's; one that is not there is said by the job
 SERIES = [file for file in [run.expansion.series] if file and Path(file).is_file()]
 LOCK = FileLock(f"results/{run.run}/.lock")  # held from the start of a run to its end
@@ -61,7 +68,7 @@ def made_from(script: str, *keys: str) -> dict[str, object]:
 
     One value for the whole, as snakemake compares a rule's params as a set, without their names.
     """
-    return {"code": source_digest(SCRIPTS / f"{script}.py"), **parts_of(run, *keys)}
+    return {"code": source_digest(SCRIPTS / f"{script}.py"), **parts_of(run.to_dict(), *keys)}
 
 
 def of_stage(stage: str) -> dict[str, object]:
@@ -110,6 +117,7 @@ rule focus_scan:
         points="results/{run}/logs/focus_scan.json",
     benchmark:
         "results/{run}/benchmarks/focus_scan.tsv"
+    threads: max(1, workflow.cores // 2)
     params:
         made_from=of_stage("focus_scan"),
     message:
@@ -126,6 +134,7 @@ rule focus_sweep:
         points="results/{run}/logs/focus_sweep.json",
     benchmark:
         "results/{run}/benchmarks/focus_sweep.tsv"
+    threads: max(1, workflow.cores // 2)
     params:
         made_from=of_stage("focus_sweep"),
     message:
@@ -155,7 +164,7 @@ rule focus_law:
 rule detections:
     input:
         # a given focus needs no law, and is not traced again when the law changes
-        focus_law="results/{run}/focus_law.nc" if run.sweep.focus == "law" else [],
+        focus_law="results/{run}/focus_law.nc" if needs_law(run) else [],
     output:
         update("results/{run}/detections.nc"),
     log:
@@ -163,6 +172,7 @@ rule detections:
         points="results/{run}/logs/detections.json",
     benchmark:
         "results/{run}/benchmarks/detections.tsv"
+    threads: workflow.cores
     params:
         made_from=of_stage("detections"),
     message:
@@ -181,6 +191,7 @@ rule spectra:
         "results/{run}/logs/spectra.log",
     benchmark:
         "results/{run}/benchmarks/spectra.tsv"
+    threads: workflow.cores
     params:
         made_from=of_stage("spectra"),
     message:
@@ -209,13 +220,10 @@ rule phase_slope:
 
 rule figures:
     input:
-        focus_scan="results/{run}/focus_scan.nc",
-        gaussian_fits="results/{run}/gaussian_fits.nc",
-        focus_law="results/{run}/focus_law.nc",
-        spectra="results/{run}/spectra.nc",
-        paths="results/{run}/paths.nc",
-        fourier="results/{run}/fourier.nc",
-        phase_slope="results/{run}/phase_slope.nc",
+        **{
+            stage: f"results/{run.run}/{stage}.nc"
+            for stage in dict.fromkeys(sum(FIGURES.values(), ()))
+        },
     output:
         update(
             expand(

@@ -21,11 +21,12 @@ from same import numpy_tree, same_tree
 from trees import NoCompilerError, scalar_tree, simd_tree
 
 import octsim
+from octsim.band import wavenumbers
 from octsim.beam import vogel_beam
 from octsim.datasets import write
 from octsim.detection import detector_of
 from octsim.scene import neuron_on_glass
-from octsim.spectrum import intensity, wavenumbers
+from octsim.spectrum import intensity
 from octsim.threads import each
 from octsim.tracing import trace
 
@@ -64,7 +65,7 @@ def trees() -> list[tuple[str, float, float]]:
     octsim_name = "octsim, one core"
     works: dict[str, Work] = {
         octsim_name: octsim_tree,
-        f"octsim, {CORES} cores": lambda: each(lambda _: octsim_tree(), range(POINTS), CORES),
+        f"octsim, {CORES} cores": lambda: list(each(lambda _: octsim_tree(), range(POINTS), CORES)),
         "numpy, breadth first": partial(numpy_tree, *arguments),
     }
     by_c: dict[str, Work] = {

@@ -11,6 +11,7 @@ from pairs import RAYS, Case, Conditions, Key, Pair, compared, prepared, sample,
 from single import follow_single
 from verdict import NOTHING, TOLERANCE, UNKNOWN, Cost, Row, Status, bound, cost
 
+from octsim.band import wavenumbers
 from octsim.beam import Beam
 from octsim.config import Config
 from octsim.detection import detector_of
@@ -18,7 +19,7 @@ from octsim.errors import ConfigError
 from octsim.faces import faces_of
 from octsim.rounding import rounding_remarks
 from octsim.scene import neuron_on_glass
-from octsim.spectrum import intensity, wavenumbers
+from octsim.spectrum import intensity
 
 WAVENUMBERS = 100
 """Most wavenumbers of a cell at which the sum is compared."""

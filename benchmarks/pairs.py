@@ -9,11 +9,11 @@ from exact import End, Inputs, follow, inputs_of, numbers, sensitivities, tree
 from numpy.typing import NDArray
 from verdict import EPSILON, NOTHING, SAFETY
 
+from octsim.band import wavenumbers
 from octsim.beam import Beam, aim, vogel_beam
 from octsim.config import Config
 from octsim.detection import detector_of
 from octsim.scene import neuron_on_glass
-from octsim.spectrum import wavenumbers
 from octsim.tracing import Detections, trace
 
 RAYS = 100

@@ -7,16 +7,17 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import CubicSpline
 
+from octsim.band import wavenumbers
 from octsim.config import Config, FocusLine
 from octsim.datasets import flags, make
 from octsim.differences import FRACTIONS, Array, derivative, stencil
+from octsim.errors import OctsimError
 from octsim.light import AccuracyStatus, Light
 from octsim.parameters import PARAMETERS, moved, offsets_of
 from octsim.plates import predicted_phase_slope
 from octsim.settings import by_accuracy, by_rays
 from octsim.sides import side_slopes
 from octsim.simulation import summer, tracer
-from octsim.spectrum import wavenumbers
 from octsim.steady import ESTIMATORS, PhaseOf, fourier_phase, phase_change
 from octsim.sweep import sweep_foci
 from octsim.threads import each
@@ -61,10 +62,15 @@ def focus_line(config: Config, law: xr.Dataset | None) -> FocusLine:
     Raises
     ------
     OctsimError
-        If the law is needed and could not be fitted.
+        If the law is needed and could not be fitted, or there are several.
     """
     if isinstance(config.sweep.focus, FocusLine):
         return config.sweep.focus
+    if law is not None and law["slope"].dims:
+        raise OctsimError(
+            "grid: given, and so several focus laws; calibrate without a grid, or give one focus "
+            "as sweep.focus: {slope: 0.581, intercept: 69 nm}"
+        )
     sweep_foci(config, law)  # says what is wrong with a law that does not serve
     return FocusLine.fitted(law)
 
@@ -104,7 +110,9 @@ def calibration(config: Config, law: xr.Dataset | None = None, threads: int = 1)
     foci, bench = line.at(diameters), _bench(exact, line.slope)
     phase_of = ESTIMATORS[settings.estimator](config)
     points = zip(diameters.tolist(), foci.tolist(), strict=True)
-    rows = each(lambda at: _measure(config, bench, phase_of, *at, line.slope), points, threads)
+    rows = list(
+        each(lambda at: _measure(config, bench, phase_of, *at, line.slope), points, threads)
+    )
     column = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     return _dataset(config, diameters, column | {"focus": foci, "slope": line.slope})
 

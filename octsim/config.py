@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Discriminator, Field, Tag
+from pydantic import ConfigDict, Discriminator, Field, Tag
 
 from octsim.calibration_config import ActionPotential, Calibration, ExpansionConfig
 from octsim.sections import (
@@ -178,6 +178,62 @@ class Processing(Section):
     window: Window = _key("hamming", "a symmetric window of scipy.signal.windows")
 
 
+class Grid(Section):
+    """Keys that are varied: each dotted key has a list of values or a range of them.
+
+    A checked config holds them as lists, in the config's own units.
+    """
+
+    model_config = ConfigDict(
+        extra="allow",
+        json_schema_extra={
+            "additionalProperties": {
+                "description": "a dotted key of the config, and the values that it takes",
+                "anyOf": [
+                    {"type": "array", "minItems": 1},
+                    {
+                        "type": "object",
+                        "properties": {
+                            "start": {"type": ["number", "string"]},
+                            "stop": {"type": ["number", "string"]},
+                            "num": {"type": "integer", "minimum": 2},
+                        },
+                        "required": ["start", "stop", "num"],
+                        "additionalProperties": False,
+                    },
+                ],
+            }
+        },
+    )
+
+    combine: Literal["product", "zip"] = _key(
+        "product", "every value with every other, or first with first and so on"
+    )
+
+    @property
+    def varied(self) -> Mapping[str, Any]:
+        """Values of each varied key."""
+        return self.model_extra or {}
+
+
+class Cache(Section):
+    """Where traced points are kept; no result depends on it."""
+
+    file: Annotated[str, Field(min_length=1)] = _key(
+        ".octsim/points.sqlite", "of this folder, or one that several share"
+    )
+    gigabytes: Annotated[Number, Field(ge=0, le=1e6)] = _key(
+        4.0, "its largest size; 0 keeps and reads nothing"
+    )
+
+
+class Budget(Section):
+    """What a run may take by its estimate; raise it to confirm a larger one."""
+
+    cpu_hours: PositiveNumber = _key(1.0, "processor time")
+    disk_gigabytes: PositiveNumber = _key(20.0, "datasets of the run")
+
+
 class Config(Section):
     """A whole run. Every value has the thesis's as its default."""
 
@@ -196,6 +252,9 @@ class Config(Section):
     calibration: Calibration = Calibration()
     expansion: ExpansionConfig = ExpansionConfig()
     action_potential: ActionPotential = ActionPotential()
+    grid: Grid = Grid()
+    cache: Cache = Cache()
+    budget: Budget = Budget()
 
     def to_dict(self) -> dict[str, Any]:
         """Give the config as plain data that `load_config` reads back to the same bits."""

@@ -19,3 +19,7 @@ class OctsimWarning(UserWarning):
 
 class FileError(OctsimError):
     """A file can't be written."""
+
+
+class CacheError(OctsimError):
+    """A file is no point cache, or not one that this octsim reads, or can't be cleared."""

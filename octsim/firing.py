@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from octsim.band import wavenumbers
 from octsim.calibrate import converged, focus_line, instrument
 from octsim.config import Config
 from octsim.datasets import make
@@ -14,7 +15,6 @@ from octsim.photons import shot_noise
 from octsim.plates import predicted_phase_slope
 from octsim.round_trip import round_trips, trip_diameters
 from octsim.series import Series, change_from_rest
-from octsim.spectrum import wavenumbers
 from octsim.steady import ESTIMATORS, fourier_phase
 from octsim.threads import each
 
@@ -61,7 +61,7 @@ def action_potential(
     focus = line.slope * settings.diameter + line.intercept
     look = instrument(converged(config))
     grown = (settings.diameter + growth).tolist()
-    spectra = np.stack(each(lambda diameter: look(diameter, focus)[0], grown, threads))
+    spectra = np.stack(list(each(lambda diameter: look(diameter, focus)[0], grown, threads)))
     counted = shot_noise(spectra, settings.photons, np.random.default_rng(settings.seed))
     depth = config.scene.refractive_index.neuron * settings.diameter
     phase_of = ESTIMATORS[config.calibration.estimator](config)

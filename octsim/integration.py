@@ -7,6 +7,7 @@ do not fit is refined (`octsim.refinement`), until the whole is within the accur
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -15,18 +16,20 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.agenda import promising
+from octsim.band import wavenumbers
 from octsim.beam import Beam, aim
 from octsim.chebyshev import HIGHEST, LOOK, tables
 from octsim.compiled import compiled
+from octsim.config import Config
 from octsim.cubature import rules
-from octsim.detection import Detector
+from octsim.detection import Detector, detector_of
 from octsim.faces import faces_of
 from octsim.lanes import LANES
 from octsim.light import AccuracyStatus, Light
 from octsim.nodes import aim_at_tile
 from octsim.paths import follow, steps_of
 from octsim.refinement import SPARE, Allowed, Tally, Work, settle
-from octsim.scene import Cylinder, Scene
+from octsim.scene import Cylinder, Scene, neuron_on_glass
 from octsim.survey import COLUMNS, recall, share_of_faint, survey_aperture
 from octsim.tiles import Tile, images
 from octsim.tracing import check_reach, trace
@@ -280,3 +283,15 @@ def _orders(accuracy: float, symmetric: bool) -> tuple[tuple[int, int], tuple[in
     # where nothing says that patches are near x = 0, all of the aperture is looked at closely
     survey = (along_s if symmetric else min(COLUMNS, LANES // along_v)), along_v
     return survey, (min(max(4, round(digits + 1)), 10), min(max(3, round(0.5 * digits + 1)), 8))
+
+
+def path_tracer(config: Config) -> Callable[[float, float], Light]:
+    """Make the function of diameter and focus (µm) that integrates a config's light paths."""
+    detector, tracing, k = detector_of(config), config.tracing, wavenumbers(config.spectrum)
+    band = float(k[0]), float(k[-1])
+
+    def at(diameter: float, focus: float) -> Light:
+        scene = neuron_on_glass(config.scene, diameter)
+        return integrate(scene, detector, focus, band, tracing.accuracy, tracing.max_intersections)
+
+    return at

@@ -10,7 +10,11 @@ from numpy.typing import NDArray
 from scipy.optimize import OptimizeWarning, curve_fit
 
 from octsim.config import Config
-from octsim.datasets import flags, make
+from octsim.datasets import flags
+from octsim.grid import Combination
+from octsim.layout import Coordinate, Layout
+from octsim.parts import Part, Stage, Stream
+from octsim.stored import Stored
 
 
 class FitStatus(IntEnum):
@@ -117,7 +121,8 @@ def fit_line(x: NDArray[np.float64], y: NDArray[np.float64]) -> Line:
     return Line(slope, intercept, *np.sqrt(np.diag(covariance)))
 
 
-def gaussian_fits(config: Config, sweep: xr.Dataset) -> xr.Dataset:
+@Stage
+def gaussian_fits(config: Config, sweep: xr.Dataset) -> Stream:
     """Fit a Gaussian plus a constant over the foci of each diameter.
 
     Returns
@@ -125,6 +130,20 @@ def gaussian_fits(config: Config, sweep: xr.Dataset) -> xr.Dataset:
     Dataset
         centre, width, amplitude, offset, their standard errors, residual and status (diameter).
     """
+    title = "Gaussian plus a constant, fitted to the intensity over the focus"
+    layout = Layout("gaussian_fits", config, title, __name__, _diameters)
+    stored = Stored(sweep, "focus_sweep", config, layout)
+    return Stream(
+        layout,
+        (Part(at, 0, 1, _fitted(stored.part(at))) for at in layout.combinations),
+    )
+
+
+def _diameters(config: Config) -> dict[str, Coordinate]:
+    return {"diameter": ("diameter", config.focus_law.diameters.values())}
+
+
+def _fitted(sweep: xr.Dataset) -> dict[str, object]:
     fits = [
         fit_gaussian(focus, intensity)
         for focus, intensity in zip(sweep["focus"].values, sweep["intensity"].values, strict=True)
@@ -136,17 +155,11 @@ def gaussian_fits(config: Config, sweep: xr.Dataset) -> xr.Dataset:
         variables[error_name] = ("diameter", [fit.standard_errors[p] for fit in fits])
     variables["residual"] = ("diameter", [fit.residual for fit in fits])
     variables["status"] = ("diameter", *flags(FitStatus, np.array([fit.status for fit in fits])))
-    return make(
-        "gaussian_fits",
-        config,
-        "Gaussian plus a constant, fitted to the intensity over the focus",
-        variables,
-        {"diameter": sweep["diameter"].values},
-        __name__,
-    )
+    return variables
 
 
-def focus_law(config: Config, fits: xr.Dataset) -> xr.Dataset:
+@Stage
+def focus_law(config: Config, fits: xr.Dataset) -> Stream:
     """Fit a straight line through the fitted centres (figure 7).
 
     Returns
@@ -155,13 +168,15 @@ def focus_law(config: Config, fits: xr.Dataset) -> xr.Dataset:
         slope, intercept and their standard errors, NaN if a fit has no peak; status(diameter) of
         the fits.
     """
-    line = fit_line(fits["diameter"].values, fits["centre"].values)
-    return make(
-        "focus_law",
-        config,
-        "Focus of greatest intensity as a linear function of the diameter",
-        {name: ((), value) for name, value in line._asdict().items()}
-        | {"status": fits["status"].variable},
-        {"diameter": fits["diameter"].values},
-        __name__,
-    )
+    title = "Focus of greatest intensity as a linear function of the diameter"
+    layout = Layout("focus_law", config, title, __name__, _diameters)
+    stored = Stored(fits, "gaussian_fits", config, layout)
+
+    def line(at: Combination) -> dict[str, object]:
+        part = stored.part(at)
+        fitted = fit_line(part["diameter"].values, part["centre"].values)
+        status = part["status"]
+        own: dict[str, object] = {name: ((), value) for name, value in fitted._asdict().items()}
+        return own | {"status": ("diameter", *flags(FitStatus, status.values))}
+
+    return Stream(layout, (Part(at, 0, 1, line(at)) for at in layout.combinations))

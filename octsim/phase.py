@@ -1,15 +1,18 @@
 """From spectra to phases and the phase slope (figures 9 to 12)."""
 
-from typing import NamedTuple
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from octsim.band import wavenumbers
 from octsim.config import Config, Processing
-from octsim.datasets import make
+from octsim.layout import Coordinate, Layout, points_per_block
+from octsim.parts import Part, Stage, Stream
 from octsim.plates import ideal_spectra, predicted_phase_slope
-from octsim.spectrum import wavenumbers
+from octsim.stored import Stored
 
 
 def centred(intensity: NDArray[np.float64], centre: str) -> NDArray[np.float64]:
@@ -73,6 +76,34 @@ class PhaseSlopes(NamedTuple):
     """Slope of the strongest component, (D,)."""
 
 
+def turns(phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give by how much phases (D, ...) turn from one to the next, (D − 1, ...), in [−π, π].
+
+    This is the step of the unwrapped phase, but as it adds nothing up it does not depend on where a
+    sweep begins.
+    """
+    step = np.diff(phase, axis=0)
+    nearest: NDArray[np.float64] = step - 2 * np.pi * np.rint(step / (2 * np.pi))
+    return nearest
+
+
+def gradient(step: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Differentiate by central differences, one-sided at both ends, as `numpy.gradient` does.
+
+    Parameters
+    ----------
+    step : ndarray, shape (N − 1, ...)
+        Steps of the function from each place to the next.
+    x : ndarray, shape (N,)
+        The places, increasing.
+    """
+    width = np.diff(x).reshape(-1, *(1,) * (step.ndim - 1))
+    slope = step / width
+    left, right = width[:-1], width[1:]
+    inner = (right * slope[:-1] + left * slope[1:]) / (left + right)
+    return np.concatenate((slope[:1], inner, slope[-1:]))
+
+
 def phase_slopes(
     diameter: NDArray[np.float64], magnitude: NDArray[np.float64], phase: NDArray[np.float64]
 ) -> PhaseSlopes:
@@ -86,12 +117,13 @@ def phase_slopes(
         Magnitude and phase (rad) of each component.
     """
     component = 1 + magnitude[:, 1:].argmax(axis=1)
-    by_component = np.gradient(np.unwrap(phase, axis=0), diameter, axis=0)
+    by_component = gradient(turns(phase), diameter)
     strongest = np.take_along_axis(by_component, component[:, np.newaxis], axis=1)[:, 0]
     return PhaseSlopes(component, by_component, strongest)
 
 
-def fourier(config: Config, spectra: xr.Dataset) -> xr.Dataset:
+@Stage
+def fourier(config: Config, spectra: xr.Dataset) -> Stream:
     """Take the Fourier transform of each spectrum.
 
     Returns
@@ -99,26 +131,38 @@ def fourier(config: Config, spectra: xr.Dataset) -> xr.Dataset:
     Dataset
         magnitude and phase (diameter, component), depth(component).
     """
-    components = fourier_components(spectra["intensity"].values, config.processing)
+
+    def own(config: Config) -> dict[str, Coordinate]:
+        depths = optical_depths(wavenumbers(config.spectrum))
+        return {
+            "diameter": ("diameter", config.sweep.diameters.values()),
+            "component": ("component", np.arange(depths.size)),
+            "depth": ("component", depths),
+        }
+
+    title = "Fourier transform of the spectrum, for each diameter"
+    layout = Layout("fourier", config, title, __name__, own, "diameter")
+    return Stream(layout, _transformed(layout, Stored(spectra, "spectra", config, layout)))
+
+
+def _block_points(layout: Layout) -> int:
+    return points_per_block(40 * layout.config.spectrum.samples)
+
+
+def _transformed(layout: Layout, stored: Stored) -> Iterator[Part]:
     dimensions = ("diameter", "component")
-    return make(
-        "fourier",
-        config,
-        "Fourier transform of the spectrum, for each diameter",
-        {
+    for at, span in layout.blocks(_block_points(layout)):
+        intensity = stored.part(at, span)["intensity"].values
+        components = fourier_components(intensity, at.config.processing)
+        variables = {
             "magnitude": (dimensions, np.abs(components)),
             "phase": (dimensions, np.angle(components)),
-        },
-        {
-            "diameter": spectra["diameter"].values,
-            "component": np.arange(components.shape[1]),
-            "depth": ("component", optical_depths(spectra["wavenumber"].values)),
-        },
-        __name__,
-    )
+        }
+        yield Part(at, span.start, len(intensity), variables)
 
 
-def phase_slope(config: Config, transformed: xr.Dataset) -> xr.Dataset:
+@Stage
+def phase_slope(config: Config, transformed: xr.Dataset) -> Stream:
     """Differentiate the phase over the diameter, and compare with the ideal and the prediction.
 
     Returns
@@ -127,44 +171,90 @@ def phase_slope(config: Config, transformed: xr.Dataset) -> xr.Dataset:
         phase_slope, component and ideal_phase_slope (diameter), component_phase_slope(diameter,
         component), predicted_phase_slope, and the thesis's summary figures as scalars.
     """
-    diameter, k = transformed["diameter"].values, wavenumbers(config.spectrum)
+
+    def own(config: Config) -> dict[str, Coordinate]:
+        return {"diameter": ("diameter", config.sweep.diameters.values())}
+
+    title = "Phase slope: change of the spectrum's phase with the diameter"
+    layout = Layout("phase_slope", config, title, __name__, own, "diameter", _component_count)
+    return Stream(layout, _differentiated(layout, Stored(transformed, "fourier", config, layout)))
+
+
+def _component_count(config: Config) -> dict[str, int]:
+    return {"component": config.spectrum.samples // 2 + 1}
+
+
+def _differentiated(layout: Layout, stored: Stored) -> Iterator[Part]:
+    slopes: dict[str, list[NDArray[np.float64]]] = {"phase_slope": [], "ideal_phase_slope": []}
+    for at, span in layout.blocks(_block_points(layout)):
+        count = layout.count(at)
+        # a central difference looks at both neighbours
+        wide = slice(max(span.start - 1, 0), min(span.stop + 1, count))
+        variables = _slopes(at.config, stored.part(at, wide), span.start - wide.start, span)
+        for name, values in slopes.items():
+            values.append(variables[name][1])
+        if span.stop == count:
+            joined = {name: np.concatenate(values) for name, values in slopes.items()}
+            variables |= _figures(at.config, layout.own[at.position]["diameter"][1], **joined)
+            slopes = {name: [] for name in slopes}
+        yield Part(at, span.start, span.stop - span.start, variables)
+
+
+def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[str, Any]:
+    """Give the slopes of some diameters of a part that holds their neighbours too."""
+    inner = slice(before, before + span.stop - span.start)
+    diameter, k = part["diameter"].values, wavenumbers(config.spectrum)
+    found = phase_slopes(diameter, part["magnitude"].values, part["phase"].values)
     n_neuron = config.scene.refractive_index.neuron
-    slopes = phase_slopes(diameter, transformed["magnitude"].values, transformed["phase"].values)
     ideal = fourier_components(ideal_spectra(n_neuron, diameter, k), config.processing)
     ideals = phase_slopes(diameter, np.abs(ideal), np.angle(ideal))
-    predicted = predicted_phase_slope(n_neuron, k[0], k[-1])
-    deviation = slopes.strongest - predicted
+    return {
+        "phase_slope": ("diameter", found.strongest[inner]),
+        "component": ("diameter", found.component[inner]),
+        "component_phase_slope": (("diameter", "component"), found.by_component[inner]),
+        "ideal_phase_slope": ("diameter", ideals.strongest[inner]),
+        "ideal_component": ("diameter", ideals.component[inner]),
+    }
+
+
+def _figures(
+    config: Config,
+    diameter: NDArray[np.float64],
+    phase_slope: NDArray[np.float64],
+    ideal_phase_slope: NDArray[np.float64],
+) -> dict[str, Any]:
+    """Give the thesis's summary figures of a sweep."""
+    k = wavenumbers(config.spectrum)
+    predicted = predicted_phase_slope(config.scene.refractive_index.neuron, k[0], k[-1])
+    deviation = phase_slope - predicted
     largest = int(np.abs(deviation).argmax())
-    return make(
-        "phase_slope",
-        config,
-        "Phase slope: change of the spectrum's phase with the diameter",
-        {
-            "phase_slope": ("diameter", slopes.strongest),
-            "component": ("diameter", slopes.component),
-            "component_phase_slope": (("diameter", "component"), slopes.by_component),
-            "ideal_phase_slope": ("diameter", ideals.strongest),
-            "ideal_component": ("diameter", ideals.component),
-            "predicted_phase_slope": predicted,
-            "mean_phase_slope": slopes.strongest.mean(),
-            "phase_slope_standard_deviation": slopes.strongest.std(),
-            "mean_ideal_phase_slope": ideals.strongest.mean(),
-            "ideal_phase_slope_standard_deviation": ideals.strongest.std(),
-            "standard_deviation_from_ideal": (slopes.strongest - ideals.strongest).std(),
-            "largest_deviation": deviation[largest],
-            "largest_deviation_diameter": diameter[largest],
-        },
-        {"diameter": diameter},
-        __name__,
-    )
+    return {
+        "predicted_phase_slope": predicted,
+        "mean_phase_slope": phase_slope.mean(),
+        "phase_slope_standard_deviation": phase_slope.std(),
+        "mean_ideal_phase_slope": ideal_phase_slope.mean(),
+        "ideal_phase_slope_standard_deviation": ideal_phase_slope.std(),
+        "standard_deviation_from_ideal": (phase_slope - ideal_phase_slope).std(),
+        "largest_deviation": deviation[largest],
+        "largest_deviation_diameter": diameter[largest],
+    }
 
 
 def summary(slopes: xr.Dataset) -> str:
     """Say in one line what a run found."""
-    value = {str(name): float(slopes[name]) for name in slopes.data_vars if not slopes[name].dims}
+    means = slopes["mean_phase_slope"].values
+    if means.ndim:
+        return (
+            f"mean phase slope over the diameters {means.min():.3f} to {means.max():.3f} mrad/nm "
+            f"over {means.size} combinations"
+        )
+    figures = (
+        "mean_phase_slope", "phase_slope_standard_deviation", "predicted_phase_slope",
+        "largest_deviation", "largest_deviation_diameter",
+    )  # fmt: skip
+    mean, scatter, predicted, deviation, diameter = (float(slopes[name]) for name in figures)
     return (
-        f"phase slope {value['mean_phase_slope']:.3f} ± "
-        f"{value['phase_slope_standard_deviation']:.3f} mrad/nm (mean ± scatter over the "
-        f"diameters), prediction {value['predicted_phase_slope']:.3f}; largest deviation from it "
-        f"{value['largest_deviation']:+.3f} at {value['largest_deviation_diameter']:.4g} um"
+        f"phase slope {mean:.3f} ± {scatter:.3f} mrad/nm (mean ± scatter over the diameters), "
+        f"prediction {predicted:.3f}; largest deviation from it {deviation:+.3f} at "
+        f"{diameter:.4g} um"
     )

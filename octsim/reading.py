@@ -1,9 +1,10 @@
 """Which keys of a config a stage reads: nothing else makes it run again."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from octsim.config import Config
+from octsim.grid import Axis, axes, combinations, overlap
 
 _SPIRAL = ("tracing.rays", "tracing.min_amplitude")
 
@@ -24,46 +25,72 @@ def instrument(config: Config) -> tuple[str, ...]:
     )  # fmt: skip
 
 
+_DECIDING = ("tracing.scheme", "tracing.preset", "sweep.focus")
+"""Keys that decide which others are read."""
+
+
 def keys_read(stage: str, config: Config) -> tuple[str, ...]:
-    """Give the keys that a stage reads itself, besides the datasets of others."""
+    """Give the keys that a stage reads itself, at any combination, besides others' datasets."""
+    return _of_all(_read, stage, config)
+
+
+def keys_behind(stage: str, config: Config) -> tuple[str, ...]:
+    """Give the keys that a stage's dataset depends on: its own and those of stages before it."""
+    return _of_all(_behind, stage, config)
+
+
+def stage_axes(stage: str, config: Config) -> tuple[Axis, ...]:
+    """Give the axes of the grid that a stage's dataset has: those of the keys that it depends on.
+
+    A stage that has nothing to do with any varied key has none.
+    """
+    return axes(config, *keys_behind(stage, config))
+
+
+def needs_law(config: Config) -> bool:
+    """Tell whether the fitted focus law is needed at some combination."""
+    return any(at.config.sweep.focus == "law" for at in combinations(config, "sweep.focus"))
+
+
+def _of_all(
+    keys: Callable[[str, Config], tuple[str, ...]], stage: str, config: Config
+) -> tuple[str, ...]:
+    every = (key for at in combinations(config, *_DECIDING) for key in keys(stage, at.config))
+    return tuple(dict.fromkeys(every))
+
+
+def _read(stage: str, config: Config) -> tuple[str, ...]:
     traced = instrument(config)
     own: Mapping[str, tuple[str, ...]] = {
         # figure 6 counts the rays of the spiral, whatever the scheme
         "focus_scan": (*traced, *_SPIRAL, "spectrum", "focus_scan"),
         "focus_sweep": (*traced, "spectrum", "focus_law"),
-        "focus_law": (),
         "detections": (*traced, "sweep"),
         "spectra": ("spectrum", *(key for key in traced if key == "tracing.accuracy")),
+        "paths": ("spectrum.wavelength",),
         "phase_slope": ("processing", "scene.refractive_index.neuron"),
         "stability": (*traced, *_SPIRAL, "spectrum", "sweep"),
         "calibration": _CALIBRATED,
         "expansion": ("expansion",),
         "action_potential": (*_CALIBRATED, "action_potential"),
         "tradeoff": (
-            "scene",
-            "objective",
-            "detector",
-            "tracing",
-            "spectrum",
-            "focus_law",
-            "sweep",
+            "scene", "objective", "detector", "tracing", "spectrum", "focus_law", "sweep",
             "processing",
         ),
-    }
-    return tuple(dict.fromkeys(own[stage]))
+    }  # fmt: skip
+    return own.get(stage, ())
 
 
-def keys_behind(stage: str, config: Config) -> tuple[str, ...]:
-    """Give the keys that a stage's dataset depends on: its own and those of stages before it."""
-    law = keys_read("focus_sweep", config)
+def _behind(stage: str, config: Config) -> tuple[str, ...]:
+    law = _read("focus_sweep", config)
+    swept = (*_read("detections", config), *(law if config.sweep.focus == "law" else ()))
+    summed = (*swept, *_read("spectra", config))
     lawful = law if config.sweep.focus == "law" else ()
-    swept = (*keys_read("detections", config), *lawful)
-    summed = (*swept, *keys_read("spectra", config))
     calibrated = (*_CALIBRATED, *lawful)
     behind = {
         "detections": swept,
         "spectra": summed,
-        "paths": summed,
+        "paths": (*swept, *_read("paths", config)),
         "fourier": (*summed, "processing"),
         "phase_slope": (*summed, "processing"),
         "calibration": calibrated,
@@ -72,18 +99,24 @@ def keys_behind(stage: str, config: Config) -> tuple[str, ...]:
         "gaussian_fits": law,
         "focus_law": law,
     }
-    return tuple(dict.fromkeys(behind[stage] if stage in behind else keys_read(stage, config)))
+    return behind.get(stage, _read(stage, config))
 
 
-def part_of(config: Mapping[str, Any], key: str) -> Any:
+def part_of(data: Mapping[str, Any], key: str) -> Any:
     """Give what stands under a dotted key of a config's plain data, or None."""
-    part: Any = config
+    part: Any = data
     for name in key.split("."):
         part = part.get(name) if isinstance(part, Mapping) else None
     return part
 
 
-def parts_of(config: Config, *keys: str) -> dict[str, object]:
-    """Give what stands under some dotted keys of a config, as plain data."""
-    data = config.to_dict()
-    return {key: part_of(data, key) for key in keys}
+def parts_of(data: Mapping[str, Any], *keys: str) -> dict[str, object]:
+    """Give what stands under some dotted keys of a config's plain data, and how they are varied."""
+    grid = data.get("grid", {})
+    varied = {
+        f"grid.{key}": value
+        for key, value in grid.items()
+        if key != "combine" and any(overlap(key, read) for read in keys)
+    }
+    how = {"grid.combine": grid["combine"]} if varied else {}
+    return {key: part_of(data, key) for key in keys} | varied | how

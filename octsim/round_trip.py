@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from octsim.band import wavenumbers
 from octsim.calibrate import Instrument, converged, focus_line, instrument
 from octsim.config import Config
 from octsim.differences import Array
@@ -12,7 +13,6 @@ from octsim.nanometres import Expansion, expansion
 from octsim.parameters import Place, drawn
 from octsim.photons import shot_noise
 from octsim.series import Series, change_from_rest
-from octsim.spectrum import wavenumbers
 from octsim.steady import ESTIMATORS
 from octsim.threads import each
 
@@ -106,7 +106,7 @@ def round_trips(
             _recover(config, calibration, other, diameter, generator),
         ]
 
-    trips = each(trip, range(len(seeds)), threads)
+    trips = list(each(trip, range(len(seeds)), threads))
     parts = np.array([[part for one in trip for part in one] for trip in trips], float)
     shaped = parts.reshape(diameters.size, TRIALS, 3, 3)
     return {

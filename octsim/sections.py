@@ -29,6 +29,10 @@ NumberTolerance = Annotated[Number, Field(ge=0, le=1)]
 Index = Annotated[Number, Field(ge=1, le=10)]
 
 
+DECIMALS = 12
+"""Of a micrometre, to which evenly spaced values are rounded: an attometre."""
+
+
 class Section(BaseModel):
     """A part of the config: frozen, with no room for keys that it does not know."""
 
@@ -43,8 +47,11 @@ class Range(Section):
     num: Annotated[int, Field(ge=2, le=1_000_000)]
 
     def values(self) -> NDArray[np.float64]:
-        """Give the values, shape (num,), in µm where they are lengths."""
-        return np.linspace(self.start, self.stop, self.num)
+        """Give the values, shape (num,), in µm where they are lengths.
+
+        They are rounded far below a femtometre: a value that two ranges share has the same bits.
+        """
+        return np.round(np.linspace(self.start, self.stop, self.num), DECIMALS)
 
 
 class FocusRange(Range):

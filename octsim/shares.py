@@ -1,41 +1,89 @@
 """What each light path has in a spectrum: its amplitude, phase, optical path and share."""
 
+from collections.abc import Iterator
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from octsim.band import wavenumbers
+from octsim.compiled import compiled
 from octsim.config import Config
-from octsim.datasets import make
+from octsim.estimates import point_cost
+from octsim.layout import Coordinate, Layout, points_per_block
 from octsim.light import Light
+from octsim.parts import Part, Stage, Stream
 from octsim.paths import path_name
-from octsim.spectrum import wavenumbers
+from octsim.stored import Stored
 from octsim.sweep import stored_light
 
 _SAMPLES = 101  # of the band, for means over it
 
 
+@compiled(fastmath={"contract"})
 def _path_fields(
-    light: Light, codes: NDArray[np.int64], wavenumber: NDArray[np.float64]
-) -> NDArray[np.complex128]:
-    """Sum the rays of each path, (P, K)."""
-    row = np.searchsorted(codes, light.path)
-    rays = light.amplitude * np.exp(1j * wavenumber[:, None] * light.optical_path_length)
-    fields = np.zeros((codes.size, wavenumber.size), complex)
-    np.add.at(fields, row, rays.T)
-    return fields
+    row: NDArray[np.int64],
+    amplitude: NDArray[np.float64],
+    optical_path_length: NDArray[np.float64],
+    paths: int,
+    first: float,
+    step: float,
+    num: int,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Sum the rays of each path at evenly spaced wavenumbers, (paths, num), by a recurrence."""
+    real, imaginary = np.zeros((paths, num)), np.zeros((paths, num))
+    for j in range(row.size):
+        reach, p = optical_path_length[j], row[j]
+        cos, sin = amplitude[j] * np.cos(first * reach), amplitude[j] * np.sin(first * reach)
+        turn_cos, turn_sin = np.cos(step * reach), np.sin(step * reach)
+        for k in range(num):
+            real[p, k] += cos
+            imaginary[p, k] += sin
+            cos, sin = cos * turn_cos - sin * turn_sin, cos * turn_sin + sin * turn_cos
+    return real, imaginary
 
 
-def _mean_paths(light: Light, codes: NDArray[np.int64]) -> NDArray[np.float64]:
+def _mean_paths(light: Light, row: NDArray[np.int64], paths: int) -> NDArray[np.float64]:
     """Mean optical path of each path's rays, weighted with their amplitudes, (P,); NaN if none."""
-    row, size = np.searchsorted(codes, light.path), np.abs(light.amplitude)
-    total = np.bincount(row, size * light.optical_path_length, codes.size)
-    weight = np.bincount(row, size, codes.size)
-    mean: NDArray[np.float64] = np.full(codes.size, np.nan)
+    size = np.abs(light.amplitude)
+    total = np.bincount(row, size * light.optical_path_length, paths)
+    weight = np.bincount(row, size, paths)
+    mean: NDArray[np.float64] = np.full(paths, np.nan)
     np.divide(total, weight, out=mean, where=weight > 0)
     return mean
 
 
-def light_paths(config: Config, detected: xr.Dataset) -> xr.Dataset:
+def _strongest_first(layout: Layout, stored: Stored) -> NDArray[np.int64]:
+    """Find every path of a sweep, that of the strongest field at the middle of the band first."""
+    strength: dict[int, float] = {}
+    for at, span in layout.blocks(_block_points(layout)):
+        part = stored.part(at, span)
+        codes, row = np.unique(part["path_code"].values, return_inverse=True)
+        k = wavenumbers(at.config.spectrum)
+        point = np.repeat(np.arange(part.sizes["diameter"]), part["rays_detected"].values)
+        phase = (k[0] + k[-1]) / 2 * part["optical_path_length"].values
+        field = [
+            np.bincount(
+                point * codes.size + row, part["amplitude"].values * wave,
+                part.sizes["diameter"] * codes.size,
+            )
+            for wave in (np.cos(phase), np.sin(phase))
+        ]  # fmt: skip
+        size = np.hypot(*field).reshape(-1, codes.size)
+        # one after the other, so that blocks of other sizes give the same bits
+        for code, sizes in zip(codes.tolist(), size.T.tolist(), strict=True):
+            for one in sizes:
+                strength[code] = strength.get(code, 0.0) + one
+    return np.array(sorted(strength, key=lambda code: (-strength[code], code)), np.int64)
+
+
+def _block_points(layout: Layout) -> int:
+    return points_per_block(point_cost(layout.config)[0] + 1000)
+
+
+@Stage
+def light_paths(config: Config, detected: xr.Dataset) -> Stream:
     r"""Tell what each light path has in the spectra of a sweep.
 
     A path's share of the intensity is
@@ -52,38 +100,56 @@ def light_paths(config: Config, detected: xr.Dataset) -> xr.Dataset:
         does not reach the detector at a diameter has no rays there, and its phase and optical path
         are NaN.
     """
-    lights, k = stored_light(detected), wavenumbers(config.spectrum)
-    codes = np.unique(detected["path_code"].values)
-    band = np.linspace(k[0], k[-1], _SAMPLES)
-    fields = np.stack([_path_fields(light, codes, band) for light in lights], axis=1)
+
+    def swept(config: Config) -> dict[str, Coordinate]:
+        return {"diameter": ("diameter", config.sweep.diameters.values())}
+
+    title = "What each light path has in the spectra"
+    unnamed = Layout("paths", config, title, __name__, swept, "diameter")
+    stored = Stored(detected, "detections", config, unnamed)
+    codes = _strongest_first(unnamed, stored)
+    named: dict[str, Coordinate] = {
+        "path": ("path", np.array([path_name(code) for code in codes.tolist()], str)),
+        "path_code": ("path", codes),
+    }
+    layout = Layout(
+        "paths", config, title, __name__, lambda config: named | swept(config), "diameter"
+    )
+    return Stream(layout, _shared(layout, stored, codes))
+
+
+def _shared(layout: Layout, stored: Stored, codes: NDArray[np.int64]) -> Iterator[Part]:
+    order = np.argsort(codes)
+    for at, span in layout.blocks(_block_points(layout)):
+        k = wavenumbers(at.config.spectrum)
+        step = (k[-1] - k[0]) / (_SAMPLES - 1)
+        found = []
+        for light in stored_light(stored.part(at, span)):
+            row = order[np.searchsorted(codes, light.path, sorter=order)]
+            found.append(_shares(light, row, codes.size, k[0], step))
+        variables = {
+            name: (("path", "diameter"), np.stack([one[name] for one in found], axis=1))
+            for name in found[0]
+        }
+        yield Part(at, span.start, len(found), variables)
+
+
+def _shares(
+    light: Light, row: NDArray[np.int64], paths: int, first: float, step: float
+) -> dict[str, NDArray[Any]]:
+    """Tell what each path has in one spectrum; `row` is the path's number, of each ray."""
+    real, imaginary = _path_fields(
+        row, light.amplitude, light.optical_path_length, paths, first, step, _SAMPLES
+    )
+    fields = real + 1j * imaginary
     whole = fields.sum(axis=0)
-    intensity = (np.abs(whole) ** 2).sum(axis=1)
-    taken = (fields.conj() * whole).real.sum(axis=2)
-    share = np.divide(taken, intensity, out=np.zeros_like(taken), where=intensity > 0)
-    middle = fields[:, :, _SAMPLES // 2]
-    rays = np.stack(
-        [np.bincount(np.searchsorted(codes, light.path), minlength=codes.size) for light in lights],
-        axis=1,
-    )
-    order = np.argsort(-np.abs(middle).mean(axis=1), kind="stable")
-    dimensions = ("path", "diameter")
-    optical = np.stack([_mean_paths(light, codes) for light in lights], axis=1)
-    phase = np.where(rays > 0, np.angle(middle), np.nan)
-    return make(
-        "paths",
-        config,
-        "What each light path has in the spectra",
-        {
-            "field_amplitude": (dimensions, np.abs(middle)[order]),
-            "field_phase": (dimensions, phase[order]),
-            "mean_optical_path_length": (dimensions, optical[order]),
-            "share": (dimensions, share[order]),
-            "path_rays": (dimensions, rays[order]),
-            "path_code": ("path", codes[order]),
-        },
-        {
-            "path": [path_name(code) for code in codes[order].tolist()],
-            "diameter": detected["diameter"].values,
-        },
-        __name__,
-    )
+    intensity = float((np.abs(whole) ** 2).sum())
+    taken = (fields.conj() * whole).real.sum(axis=1)
+    middle, rays = fields[:, _SAMPLES // 2], np.bincount(row, minlength=paths)
+    return {
+        "field_amplitude": np.abs(middle),
+        "field_phase": np.where(rays > 0, np.angle(middle), np.nan),
+        "mean_optical_path_length": _mean_paths(light, row, paths),
+        "share": taken / intensity if intensity > 0 else np.zeros(paths),
+        "path_rays": rays,
+    }

@@ -7,7 +7,6 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.compiled import compiled
-from octsim.config import Spectrum
 
 # A phasor is set anew after so many steps, so that rounding does not add up over long spectra.
 _STRETCH = 128
@@ -26,12 +25,6 @@ def relative_error(largest_field: float, field_error: float) -> float:
         return math.inf if field_error > 0 else 0.0
     ratio = field_error / largest_field
     return 2 * ratio + ratio * ratio
-
-
-def wavenumbers(spectrum: Spectrum) -> NDArray[np.float64]:
-    """Wavenumbers 2π/λ of the samples, evenly spaced and increasing, shape (K,), in 1/µm."""
-    band = spectrum.wavelength
-    return np.linspace(2 * np.pi / band.max, 2 * np.pi / band.min, spectrum.samples)
 
 
 @compiled(fastmath={"reassoc", "contract"})

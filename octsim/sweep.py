@@ -1,20 +1,26 @@
 """The sweep over diameters: detected rays, and the spectra that they sum to (figure 8)."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from octsim.band import wavenumbers
 from octsim.config import Config, FocusLine
-from octsim.datasets import flags, make
+from octsim.datasets import flags
 from octsim.detection import Outcome
 from octsim.errors import OctsimError
+from octsim.estimates import point_cost
+from octsim.grid import Combination, combinations
+from octsim.layout import Coordinate, Layout, filling, points_per_block
 from octsim.light import AccuracyStatus, Light
-from octsim.simulation import summer, tracer
-from octsim.spectrum import wavenumbers
-from octsim.threads import each
+from octsim.parts import Part, Stage, Stream
+from octsim.points import Points
+from octsim.simulation import Tracer, summer
+from octsim.stored import Stored
+from octsim.threads import each_block
 
 RAYS: Mapping[str, str] = {
     "path_code": "path",
@@ -73,7 +79,13 @@ def sweep_foci(config: Config, law: xr.Dataset | None) -> NDArray[np.float64]:
     return foci
 
 
-def detections(config: Config, law: xr.Dataset | None = None, threads: int = 1) -> xr.Dataset:
+@Stage
+def detections(
+    config: Config,
+    law: xr.Dataset | None = None,
+    threads: int = 1,
+    points: Points | None = None,
+) -> Stream:
     """Trace every diameter of the sweep.
 
     Returns
@@ -84,16 +96,56 @@ def detections(config: Config, law: xr.Dataset | None = None, threads: int = 1) 
         them); what was left out and whether the accuracy is reached (diameter); and, of the scheme
         vogel, how all segments of ray ended, outcomes(diameter, outcome).
     """
-    diameters, foci = config.sweep.diameters.values(), sweep_foci(config, law)
-    trace_at = tracer(config)
-    found = each(
-        lambda point: trace_at(*point),
-        zip(diameters.tolist(), foci.tolist(), strict=True),
-        threads,
-    )
+    whence = points or Points()
+
+    named: Coordinate = "outcome", np.array([outcome.name.lower() for outcome in Outcome])
+    schemes = combinations(config, "tracing.scheme", "tracing.preset")
+    counted = any(at.config.tracing.scheme == "vogel" for at in schemes)
+
+    def own(config: Config) -> dict[str, Coordinate]:
+        swept = {"diameter": ("diameter", config.sweep.diameters.values())}
+        return swept | ({"outcome": named} if counted else {})
+
+    title = "Rays that reach the detector, for each diameter"
+    layout = Layout("detections", config, title, __name__, own, "diameter")
+    return Stream(layout, _detected(layout, law, whence, threads))
+
+
+def _detected(
+    layout: Layout, law: xr.Dataset | None, whence: Points, threads: int
+) -> Iterator[Part]:
+    config = layout.config
+    stored = Stored(law, "focus_law", config) if law is not None else None
+
+    def foci(at: Combination) -> NDArray[np.float64]:
+        given = isinstance(at.config.sweep.focus, FocusLine)
+        try:
+            return sweep_foci(at.config, None if given or stored is None else stored.part(at))
+        except OctsimError as error:
+            raise OctsimError(f"{error} (at {at})" if at.values else str(error)) from None
+
+    # known before the first is traced: a law that is missing anywhere stops the stage here
+    focus = {at.position: foci(at) for at in layout.combinations}
+
+    def points_of(block: tuple[Combination, slice]) -> Iterator[tuple[Tracer, float, float]]:
+        at, span = block
+        trace_at = whence.tracer(at.config)
+        diameters = layout.own[at.position]["diameter"][1][span]
+        pairs = zip(diameters.tolist(), focus[at.position][span].tolist(), strict=True)
+        return ((trace_at, d, z) for d, z in pairs)
+
+    blocks = list(layout.blocks(points_per_block(*point_cost(config))))
+    for (at, span), found in each_block(lambda p: p[0](p[1], p[2]), blocks, points_of, threads):
+        variables = _light_variables(found, focus[at.position][span])
+        if "outcome" in layout.own[at.position]:
+            variables["outcomes"] = ("diameter", "outcome"), _outcomes(found)
+        yield Part(at, span.start, len(found), variables)
+
+
+def _light_variables(found: list[Light], focus: NDArray[np.float64]) -> dict[str, Any]:
     counts = np.array([light.amplitude.size for light in found])
     status = np.array([light.status for light in found])
-    variables: dict[str, Any] = {
+    return {
         **{
             name: ("ray", np.concatenate([getattr(light, field) for light in found]))
             for name, field in RAYS.items()
@@ -102,25 +154,17 @@ def detections(config: Config, law: xr.Dataset | None = None, threads: int = 1) 
         "segments_traced": ("diameter", np.array([light.segments for light in found])),
         "missing_field": ("diameter", np.array([light.missing for light in found])),
         "accuracy_status": ("diameter", *flags(AccuracyStatus, status)),
-        "focus": ("diameter", foci),
+        "focus": ("diameter", focus),
     }
-    coordinates: dict[str, Any] = {"diameter": diameters}
-    outcomes = [light.outcomes for light in found if light.outcomes is not None]
-    if outcomes:
-        variables["outcomes"] = (("diameter", "outcome"), np.stack(outcomes))
-        coordinates["outcome"] = [outcome.name.lower() for outcome in Outcome]
-    return make(
-        "detections",
-        config,
-        "Rays that reach the detector, for each diameter",
-        variables,
-        coordinates,
-        __name__,
-    )
+
+
+def _outcomes(found: list[Light]) -> NDArray[np.int64]:
+    none = np.full(len(Outcome), filling(np.dtype(np.int64)))
+    return np.stack([none if light.outcomes is None else light.outcomes for light in found])
 
 
 def stored_light(detected: xr.Dataset) -> list[Light]:
-    """Read the light of each diameter back from a dataset of the stage detections."""
+    """Read the light of each diameter back from a plain dataset of the stage detections."""
     ends = np.cumsum(detected["rays_detected"].values)[:-1]
     rays = [np.split(detected[name].values, ends) for name in RAYS]
     return [
@@ -135,7 +179,8 @@ def stored_light(detected: xr.Dataset) -> list[Light]:
     ]
 
 
-def spectra(config: Config, detected: xr.Dataset, threads: int = 1) -> xr.Dataset:
+@Stage
+def spectra(config: Config, detected: xr.Dataset, threads: int = 1) -> Stream:
     """Sum the detected rays of each diameter to a spectrum.
 
     Returns
@@ -144,31 +189,53 @@ def spectra(config: Config, detected: xr.Dataset, threads: int = 1) -> xr.Datase
         intensity(diameter, wavenumber) and focus(diameter), with the estimated error of the
         intensity and whether that is as asked (diameter).
     """
-    spectrum, error = zip(*each(summer(config), stored_light(detected), threads), strict=True)
-    status = detected["accuracy_status"].values
-    if config.tracing.scheme == "paths":
-        # the error is judged at the samples themselves
-        late = (status == AccuracyStatus.REACHED) & (np.array(error) > config.tracing.accuracy)
-        status = np.where(late, AccuracyStatus.NOT_REACHED, status)
-    return make(
-        "spectra",
-        config,
-        "Spectrum of the detected light, for each diameter",
-        {
+
+    def own(config: Config) -> dict[str, Coordinate]:
+        return {
+            "diameter": ("diameter", config.sweep.diameters.values()),
+            "wavenumber": ("wavenumber", wavenumbers(config.spectrum)),
+        }
+
+    title = "Spectrum of the detected light, for each diameter"
+    layout = Layout("spectra", config, title, __name__, own, "diameter")
+    return Stream(layout, _summed(layout, Stored(detected, "detections", config, layout), threads))
+
+
+def _summed(layout: Layout, stored: Stored, threads: int) -> Iterator[Part]:
+    parts: dict[int, xr.Dataset] = {}
+
+    def points_of(block: tuple[Combination, slice]) -> Iterator[tuple[Any, Light]]:
+        at, span = block
+        part = stored.part(at, span)
+        parts[id(block)] = part[["accuracy_status", "focus"]]
+        sum_light = summer(at.config)
+        return ((sum_light, light) for light in stored_light(part))
+
+    size = 8 * layout.config.spectrum.samples + point_cost(layout.config)[0]
+    blocks = list(layout.blocks(points_per_block(size)))
+    for block, found in each_block(lambda p: p[0](p[1]), blocks, points_of, threads):
+        (at, span), part = block, parts.pop(id(block))
+        spectrum, error = zip(*found, strict=True)
+        status = part["accuracy_status"].values
+        if at.config.tracing.scheme == "paths":
+            # the error is judged at the samples themselves
+            late = np.array(error) > at.config.tracing.accuracy
+            reached = status == AccuracyStatus.REACHED
+            status = np.where(reached & late, AccuracyStatus.NOT_REACHED, status)
+        variables = {
             "intensity": (("diameter", "wavenumber"), np.stack(spectrum)),
             "intensity_error": ("diameter", np.array(error)),
             "accuracy_status": ("diameter", *flags(AccuracyStatus, status)),
-            "focus": ("diameter", detected["focus"].values),
-        },
-        {"diameter": detected["diameter"].values, "wavenumber": wavenumbers(config.spectrum)},
-        __name__,
-    )
+            "focus": ("diameter", part["focus"].values),
+        }
+        yield Part(at, span.start, len(found), variables)
 
 
 def unreached(measured: xr.Dataset) -> str | None:
     """Say in a line at how many points the accuracy asked for is not reached, if at any."""
     status = measured["accuracy_status"].values
-    missed = (status != AccuracyStatus.REACHED) & (status != AccuracyStatus.NOT_CONTROLLED)
+    fine = (AccuracyStatus.REACHED, AccuracyStatus.NOT_CONTROLLED, filling(status.dtype))
+    missed = ~np.isin(status, fine)
     if not missed.any():
         return None
     worst = float(measured["intensity_error"].values[missed].max())

@@ -1,21 +1,52 @@
 """Independent points on several threads, in order; compiled code lets go of the interpreter."""
 
-from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from itertools import groupby, islice
 from typing import TypeVar
 
 Point = TypeVar("Point")
 Result = TypeVar("Result")
+Block = TypeVar("Block")
+_TOGETHER = 8  # points that one thread takes at a time
 
 
-def each(work: Callable[[Point], Result], points: Iterable[Point], threads: int) -> list[Result]:
+def each(
+    work: Callable[[Point], Result], points: Iterable[Point], threads: int
+) -> Iterator[Result]:
     """Do the same work for every point; results in the points' order, whatever the threads.
 
-    One thread is a thread of its own too: an interrupt (Ctrl-C) then reaches this one, which
-    waits, and drops the points that have not begun.
+    Points are taken, and results held, a few ahead of what is asked for. One thread is a thread
+    of its own too: an interrupt (Ctrl-C) then reaches this one, which waits, and drops the points
+    that have not begun.
     """
+    left = iter(points)
+
+    def together(some: list[Point]) -> list[Result]:
+        return [work(point) for point in some]
+
     pool = ThreadPoolExecutor(threads)
+    waiting: deque[Future[list[Result]]] = deque()
     try:
-        return list(pool.map(work, points))
+        while True:
+            while len(waiting) < 2 * threads + 1 and (some := list(islice(left, _TOGETHER))):
+                waiting.append(pool.submit(together, some))
+            if not waiting:
+                return
+            yield from waiting.popleft().result()
     finally:
         pool.shutdown(cancel_futures=True)
+
+
+def each_block(
+    work: Callable[[Point], Result],
+    blocks: Sequence[Block],
+    points_of: Callable[[Block], Iterable[Point]],
+    threads: int,
+) -> Iterator[tuple[Block, list[Result]]]:
+    """Do the same work for the points of each block, as `each`, without a pause between blocks."""
+    numbered = ((number, point) for number, b in enumerate(blocks) for point in points_of(b))
+    results = each(lambda one: (one[0], work(one[1])), numbered, threads)
+    for number, found in groupby(results, key=lambda one: one[0]):
+        yield blocks[number], [result for _, result in found]

@@ -74,7 +74,7 @@ def exact_spectra(config: Config, line: FocusLine, threads: int) -> Array:
     trace_at, sum_light = tracer(converged), summer(converged)
     diameters = converged.sweep.diameters.values()
     points = zip(diameters.tolist(), line.at(diameters).tolist(), strict=True)
-    return np.stack(each(lambda point: sum_light(trace_at(*point))[0], points, threads))
+    return np.stack(list(each(lambda point: sum_light(trace_at(*point))[0], points, threads)))
 
 
 class _Reference:

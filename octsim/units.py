@@ -2,7 +2,7 @@
 
 import re
 from decimal import Decimal, DecimalException
-from functools import cache
+from functools import cache, lru_cache
 from typing import Annotated, Any
 
 import pint
@@ -39,12 +39,17 @@ def parse_length(text: object) -> float:
     ValueError
         If there is no unit, the unit is not one of length, or the number is not finite.
     """
-    match = _LENGTH.fullmatch(text) if isinstance(text, str) else None
+    if isinstance(text, str):
+        return _parsed(text)
+    bare = isinstance(text, int | float) and not isinstance(text, bool)
+    raise ValueError(f"{'a length needs its unit' if bare else 'not a length'}; {_EXAMPLES}")
+
+
+@lru_cache(maxsize=100_000)  # the combinations of a grid repeat theirs
+def _parsed(text: str) -> float:
+    match = _LENGTH.fullmatch(text)
     if match is None:
-        bare = isinstance(text, int | float) or (isinstance(text, str) and _NUMBER.fullmatch(text))
-        reason = (
-            "a length needs its unit" if bare and not isinstance(text, bool) else "not a length"
-        )
+        reason = "a length needs its unit" if _NUMBER.fullmatch(text) else "not a length"
         raise ValueError(f"{reason}; {_EXAMPLES}")
     number, unit = match.groups()
     try:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from octsim import calibrate
+from octsim.band import wavenumbers
 from octsim.calibrate import calibration, interpolation_error, summary
 from octsim.config import Config
 from octsim.datasets import read, write
@@ -26,7 +27,6 @@ from octsim.plates import ideal_spectra, predicted_phase_slope
 from octsim.settings import by_rays, changed
 from octsim.sides import SIDES, path_field, side_slopes
 from octsim.simulation import summer, tracer
-from octsim.spectrum import wavenumbers
 from octsim.steady import fourier_phase, phase_change, sinusoid_phase
 
 Array = NDArray[np.float64]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 import octsim
 from octsim import round_trip
+from octsim.band import wavenumbers
 from octsim.calibrate import converged, instrument
 from octsim.config import Config
 from octsim.errors import ConfigError, DatasetError, OctsimError
@@ -23,7 +24,6 @@ from octsim.nanometres import LARGEST, expansion, sensitivity_at, series_expansi
 from octsim.nanometres import summary as expansion_summary
 from octsim.photons import shot_noise
 from octsim.series import Series, change_from_rest, read_series
-from octsim.spectrum import wavenumbers
 from octsim.steady import phase_change, sinusoid_phase
 
 Array = NDArray[np.float64]

@@ -12,6 +12,8 @@ from octsim.config import Processing
 from octsim.figures import FIGURES
 from octsim.figures.style import component_colour, look, save
 
+GRID = {"processing.window": ["hann", "hamming"], "processing.centre": ["mean", "midpoint"]}
+
 
 @pytest.fixture(scope="module")
 def stages() -> dict[str, xr.Dataset]:
@@ -29,7 +31,10 @@ def stages() -> dict[str, xr.Dataset]:
     detected = octsim.detections(config, law)
     spectra = octsim.spectra(config, detected)
     fourier = octsim.fourier(config, spectra)
+    varied = octsim.load_config(config.to_dict(), {"grid": GRID})
+    over_grid = octsim.phase_slope(varied, octsim.fourier(varied, spectra))
     return {
+        "grid": over_grid,
         "focus_scan": octsim.focus_scan(config),
         "gaussian_fits": fits,
         "focus_law": law,
@@ -46,7 +51,8 @@ def test_a_figure_is_the_same_bytes_each_time_and_has_units(
 ) -> None:
     for copy in ("a", "b"):
         with look():
-            figure = FIGURES[name](stages, Processing())
+            given = stages | {"phase_slope": stages["grid"]} if name == "grid" else stages
+            figure = FIGURES[name](given, Processing())
             for form in ("png", "svg"):
                 save(figure, tmp_path / f"{copy}.{form}")
     for form in ("png", "svg"):
@@ -56,6 +62,11 @@ def test_a_figure_is_the_same_bytes_each_time_and_has_units(
 
 
 LABELS = {
+    "grid": {
+        "Processing window",
+        "Mean phase slope (mrad/nm)",
+        "Scatter over the diameters (mrad/nm)",
+    },
     "figure_1": {"x (radius of the aperture)", "y (radius of the aperture)"},
     "figure_6": {
         "Height of the focus above the glass (µm)",

@@ -71,7 +71,8 @@ def test_two_points_are_a_line_without_an_error() -> None:
 
 
 def test_one_missing_centre_leaves_no_law() -> None:
-    config = load_config()
+    diameters = {"start": "1 um", "stop": "2 um", "num": 2}
+    config = load_config({"focus_law": {"diameters": diameters}})
     sweep = xr_sweep(np.stack([gaussian(FOCI, 0.6, 0.1, 1.0, 0.0), FOCI]))
     fits = gaussian_fits(config, sweep)
     assert fits["status"].attrs["flag_meanings"] == "fitted no_interior_peak not_converged"

@@ -8,6 +8,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy import integrate as quadrature
 
+from octsim.band import wavenumbers
 from octsim.beam import Beam, aim
 from octsim.config import Config
 from octsim.detection import Detector, detector_of
@@ -18,7 +19,7 @@ from octsim.optics import cos_transmitted_squared, fresnel
 from octsim.paths import path_name
 from octsim.scene import Cylinder, Medium, Plane, Scene, neuron_on_glass
 from octsim.simulation import summer, tracer
-from octsim.spectrum import intensity, sum_paths, wavenumbers
+from octsim.spectrum import intensity, sum_paths
 from octsim.tracing import trace
 
 CONFIG = Config()

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import reference
 
+from octsim.band import wavenumbers
 from octsim.config import Processing
 from octsim.loading import load_config
 from octsim.phase import (
@@ -14,7 +15,6 @@ from octsim.phase import (
     windowed,
 )
 from octsim.plates import ideal_spectra, predicted_phase_slope
-from octsim.spectrum import wavenumbers
 
 CONFIG = load_config()
 K = wavenumbers(CONFIG.spectrum)

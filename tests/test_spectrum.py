@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from octsim.band import wavenumbers
 from octsim.loading import load_config
-from octsim.spectrum import intensity, wavenumbers
+from octsim.spectrum import intensity
 
 
 def test_wavenumbers_are_even_and_hold_both_ends() -> None:

@@ -26,7 +26,8 @@ from octsim.detection import detector_of
 from octsim.faces import faces_of
 from octsim.figures.stability import stability_figure
 from octsim.figures.style import look, save
-from octsim.loading import load_config, remarks
+from octsim.grid import remarks
+from octsim.loading import load_config
 from octsim.optics import Vector, fresnel, unit
 from octsim.paths import path_name
 from octsim.rounding import rounding_remarks

@@ -17,7 +17,7 @@ from octsim.loading import load_config
 from octsim.optics import fresnel
 from octsim.paths import path_name
 from octsim.scene import neuron_on_glass
-from octsim.simulation import vogel_tracer
+from octsim.spiral import vogel_tracer
 from octsim.tracing import Detections, trace
 
 

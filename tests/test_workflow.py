@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+import sqlite3
 import subprocess
 import sys
 from pathlib import Path
@@ -13,7 +14,7 @@ import xarray as xr
 import yaml
 
 from octsim.config import Config
-from octsim.loading import known_keys
+from octsim.problems import known_keys
 
 ROOT = Path(__file__).parent.parent
 TINY: dict[str, Any] = {
@@ -111,7 +112,8 @@ def test_a_run_leaves_every_dataset_figure_log_and_benchmark(law: Checkout) -> N
             assert (folder / "figures" / f"{figure}.{form}").stat().st_size > 1000
     for stage, points in {"focus_scan": 5, "focus_sweep": 27, "detections": 9}.items():
         counts = json.loads((folder / "logs" / f"{stage}.json").read_text())
-        assert counts == {"points_traced": points, "points_from_cache": 0}
+        assert sum(counts.values()) == points
+        assert set(counts) == {"points_traced", "points_from_cache"}
         assert (folder / "benchmarks" / f"{stage}.tsv").exists()
         assert (folder / "logs" / f"{stage}.log").exists()
 
@@ -158,6 +160,11 @@ EDITS: dict[str, tuple[Any, set[str], set[str]]] = {
     "processing.estimator": (None, set(), set()),  # there is but one
     "processing.centre": ("mean", {"phase_slope", "figures"}, {"phase_slope", "figures"}),
     "processing.window": ("hann", {"phase_slope", "figures"}, {"phase_slope", "figures"}),
+    "grid.combine": ("zip", set(), set()),
+    "cache.file": ("other.sqlite", set(), set()),
+    "cache.gigabytes": (1, set(), set()),
+    "budget.cpu_hours": (2, set(), set()),
+    "budget.disk_gigabytes": (21, set(), set()),
 }
 # of targets that are no part of a run
 OTHERS: dict[str, Any] = {
@@ -307,3 +314,113 @@ def test_every_run_has_its_own_folder_and_the_same_bits(law: Checkout, tmp_path:
     checkout = Checkout(tmp_path)
     checkout.run(TINY, "--cores", "1")
     assert checkout.results() == law.results()
+
+
+GRID: dict[str, Any] = merged(
+    TINY,
+    GIVEN,
+    {
+        "run": "grid",
+        "grid": {"scene.gap": ["5 nm", "20 nm"], "processing.window": ["hann", "hamming"]},
+    },
+)
+
+
+@pytest.fixture(scope="module")
+def grid(tmp_path_factory: pytest.TempPathFactory) -> Checkout:
+    checkout = Checkout(tmp_path_factory.mktemp("grid"))
+    checkout.run(GRID)
+    return checkout
+
+
+def counts(checkout: Checkout, run: str) -> dict[str, dict[str, int]]:
+    logs = checkout.folder / "results" / run / "logs"
+    return {file.stem: json.loads(file.read_text()) for file in sorted(logs.glob("*.json"))}
+
+
+def test_a_grid_gives_one_dataset_a_stage_with_its_keys_as_dimensions(grid: Checkout) -> None:
+    folder = grid.folder / "results" / "grid"
+    dimensions = {}
+    for stage in STAGES:
+        with xr.open_dataset(folder / f"{stage}.nc") as dataset:
+            dimensions[stage] = {d for d in dataset.dims if d in ("gap", "window")}
+    assert dimensions.pop("fourier") == dimensions.pop("phase_slope") == {"gap", "window"}
+    assert set(map(frozenset, dimensions.values())) == {frozenset({"gap"})}
+    figures = sorted(path.name for path in (folder / "figures").iterdir())
+    assert figures == ["figure_1.png", "figure_1.svg", "grid.png", "grid.svg"]
+    assert sum(counts(grid, "grid")["detections"].values()) == 18  # not once a window
+
+
+def test_an_edit_of_the_grid_reruns_only_what_has_the_key(grid: Checkout) -> None:
+    wider = merged(GRID, {"grid": {"processing.window": ["hann", "hamming", "boxcar"]}})
+    assert grid.would_run(wider) == {"phase_slope", "figures"}
+    rewritten = merged(
+        GRID, {"grid": {"scene.gap": {"start": "0.005 um", "stop": "20 nm", "num": 2}}}
+    )
+    assert grid.would_run(rewritten) == set()
+
+
+def test_an_estimate_is_printed_first_and_a_large_run_wants_to_be_confirmed(tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    large = merged(GRID, {"sweep": {"diameters": {"num": 1_000_000}}, "tracing": {"rays": 3000}})
+    done = checkout.snakemake(large)
+    assert done.returncode != 0
+    lines = [line for line in done.stderr.splitlines() if line.startswith("octsim: ")]
+    assert lines[0].startswith("octsim: 4 combinations, 2000064 points to trace")
+    assert "of processor time" in lines[0]
+    assert lines[1].startswith("octsim: budget.cpu_hours: 1 given, but this run takes about 1.")
+    assert not (tmp_path / "results").exists()
+    confirmed = merged(large, {"budget": {"cpu_hours": 20, "disk_gigabytes": 1000}})
+    again = checkout.snakemake(confirmed, "--dry-run")
+    assert "budget.cpu_hours" not in again.stderr
+
+
+def test_points_are_kept_for_other_runs_and_for_going_back(tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    start = merged(TINY, GIVEN)
+    checkout.run(start)
+    shutil.rmtree(tmp_path / "results")
+    shutil.rmtree(tmp_path / ".snakemake")
+    for overlay, traced in (
+        (start, 0),
+        (merged(start, {"run": "other"}), 0),
+        (merged(start, {"spectrum": {"wavelength": {"min": "700 nm"}}}), 0),
+        (merged(start, {"sweep": {"diameters": {"num": 17}}}), 8),
+        (merged(start, {"scene": {"gap": "6 nm"}}), 41),
+        (start, 0),
+    ):
+        checkout.run(overlay)
+        found = counts(checkout, overlay["run"])
+        assert sum(one["points_traced"] for one in found.values()) == traced
+        assert sum(sum(one.values()) for one in found.values()) == (49 if traced == 8 else 41)
+
+
+def test_no_result_depends_on_the_cache(law: Checkout, tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    without = merged(TINY, {"cache": {"gigabytes": 0}})
+    checkout.run(without)
+    assert checkout.results() == law.results()
+    assert not (tmp_path / ".octsim").exists()
+    assert {one["points_from_cache"] for one in counts(checkout, "tiny").values()} == {0}
+
+
+@pytest.mark.parametrize("kind", ["foreign", "future"])
+def test_a_cache_that_is_none_is_refused_in_a_line_and_stays(kind: str, tmp_path: Path) -> None:
+    checkout, file = Checkout(tmp_path), tmp_path / ".octsim" / "points.sqlite"
+    if kind == "foreign":
+        file.parent.mkdir()
+        file.write_text("somebody's notes")
+    else:
+        checkout.run(TINY, "--until", "focus_scan")
+        with sqlite3.connect(file) as database:
+            database.execute("PRAGMA user_version = 99")
+        database.close()
+    before = file.read_bytes()
+    done = checkout.snakemake(merged(TINY, {"run": "next"}))
+    assert done.returncode != 0
+    said = [line for line in done.stderr.splitlines() if line.startswith("octsim: ")]
+    assert len(said) == 1
+    assert ".octsim/points.sqlite: " in said[0]
+    assert "Traceback" not in done.stderr
+    assert file.read_bytes() == before
+    assert not (tmp_path / "results" / "next").exists()

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from octsim.config import Processing
 from octsim.figures.beam import figure_1
 from octsim.figures.focus import figure_6, figure_7
+from octsim.figures.grid import figure_grid
 from octsim.figures.paths import figure_paths
 from octsim.figures.phase import figure_10, figure_11, figure_12
 from octsim.figures.spectrum import figure_8, figure_9
@@ -24,5 +25,6 @@ FIGURES: Mapping[str, Draw] = {
     "figure_11": lambda stages, _: figure_11(stages["fourier"], stages["phase_slope"]),
     "figure_12": lambda stages, _: figure_12(stages["phase_slope"]),
     "paths": lambda stages, _: figure_paths(stages["paths"]),
+    "grid": lambda stages, _: figure_grid(stages["phase_slope"]),
 }
 """How each figure is drawn from the stages' datasets, by name, and the run's processing."""

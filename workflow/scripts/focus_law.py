@@ -2,10 +2,14 @@
 
 from job import job
 
-from octsim.datasets import read, write
+from octsim.datasets import opened, read
 from octsim.law import focus_law, gaussian_fits
+from octsim.netcdf import write_stream
+from octsim.progress import watched
 
 with job(snakemake) as config:
-    fits = gaussian_fits(config, read(snakemake.input.focus_sweep, "focus_sweep", config))
-    write(fits, snakemake.output.gaussian_fits)
-    write(focus_law(config, fits), snakemake.output.focus_law)
+    fits_file = snakemake.output.gaussian_fits
+    with opened(snakemake.input.focus_sweep, "focus_sweep", config) as sweep:
+        write_stream(watched(gaussian_fits.stream(config, sweep)), fits_file)
+    fits = read(fits_file, "gaussian_fits", config)
+    write_stream(focus_law.stream(config, fits), snakemake.output.focus_law)

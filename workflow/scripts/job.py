@@ -10,13 +10,14 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
-
-import xarray as xr
+from typing import TYPE_CHECKING, Any
 
 from octsim.config import Config
 from octsim.errors import OctsimError, OctsimWarning
 from octsim.loading import load_config
+
+if TYPE_CHECKING:
+    from octsim.points import Points
 
 
 def end_with_the_run() -> None:
@@ -54,7 +55,18 @@ def job(snakemake: Any) -> Iterator[Config]:
         sys.exit(f"octsim: {error}")
 
 
-def count_points(snakemake: Any, dataset: xr.Dataset) -> None:
-    """Leave the number of traced points, each a diameter at a focus, in the job's points log."""
-    counts = {"points_traced": dataset["focus"].size, "points_from_cache": 0}
+@contextmanager
+def points(snakemake: Any, config: Config) -> Iterator["Points"]:
+    """Give a stage where its light is from, the cache or the tracer; log how much came of each."""
+    # numba's import is not for jobs that trace nothing
+    from octsim.cache import opened
+    from octsim.points import Points
+
+    with opened(Path(config.cache.file), config.cache.gigabytes) as cache:
+        whence = Points(cache)
+        try:
+            yield whence
+        finally:
+            whence.keep()
+    counts = {"points_traced": whence.traced, "points_from_cache": whence.from_cache}
     Path(snakemake.log.points).write_text(json.dumps(counts) + "\n", encoding="utf-8")

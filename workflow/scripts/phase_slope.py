@@ -4,12 +4,16 @@ import logging
 
 from job import job
 
-from octsim.datasets import read, write
+from octsim.datasets import opened
+from octsim.netcdf import write_stream
 from octsim.phase import fourier, phase_slope, summary
+from octsim.progress import watched
 
 with job(snakemake) as config:
-    transformed = fourier(config, read(snakemake.input.spectra, "spectra", config))
-    write(transformed, snakemake.output.fourier)
-    slopes = phase_slope(config, transformed)
-    write(slopes, snakemake.output.phase_slope)
-    logging.info("%s", summary(slopes))
+    with opened(snakemake.input.spectra, "spectra", config) as spectra:
+        write_stream(watched(fourier.stream(config, spectra)), snakemake.output.fourier)
+    with opened(snakemake.output.fourier, "fourier", config) as transformed:
+        slopes = phase_slope.stream(config, transformed)
+        write_stream(watched(slopes), snakemake.output.phase_slope)
+    with opened(snakemake.output.phase_slope, "phase_slope", config) as found:
+        logging.info("%s", summary(found))

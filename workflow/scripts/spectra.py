@@ -4,14 +4,17 @@ import logging
 
 from job import job
 
-from octsim.datasets import read, write
+from octsim.datasets import opened
+from octsim.netcdf import write_stream
+from octsim.progress import watched
 from octsim.shares import light_paths
 from octsim.sweep import spectra, unreached
 
 with job(snakemake) as config:
-    detected = read(snakemake.input.detections, "detections", config)
-    measured = spectra(config, detected, snakemake.threads)
-    if said := unreached(measured):
-        logging.warning("octsim: warning: %s", said)
-    write(measured, snakemake.output.spectra)
-    write(light_paths(config, detected), snakemake.output.paths)
+    with opened(snakemake.input.detections, "detections", config) as detected:
+        summed = spectra.stream(config, detected, snakemake.threads)
+        write_stream(watched(summed), snakemake.output.spectra)
+        write_stream(watched(light_paths.stream(config, detected)), snakemake.output.paths)
+    with opened(snakemake.output.spectra, "spectra", config) as measured:
+        if said := unreached(measured):
+            logging.warning("octsim: warning: %s", said)
