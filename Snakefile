@@ -52,6 +52,10 @@ STAGES = (
     "phase_slope",
 )
 FIGURES = figures_of(run)
+# of targets of a single config; a job of a grid says so at once, and no law is fitted for it
+LAW = f"results/{run.run}/focus_law.nc" if needs_law(run) and not run.grid.varied else []
+# a measured series is a file of the user's; one that is not there is said by the job
+SERIES = [file for file in [run.expansion.series] if file and Path(file).is_file()]
 LOCK = FileLock(f"results/{run.run}/.lock")  # held from the start of a run to its end
 SCRIPTS = Path(workflow.basedir) / "workflow" / "scripts"
 BENCHMARKS = Path(workflow.basedir) / "benchmarks"
@@ -285,9 +289,7 @@ rule tradeoff:
 
 rule causes:
     input:
-        focus_law=(
-            expand("results/{run}/focus_law.nc", run=run.run) if run.sweep.focus == "law" else []
-        ),
+        focus_law=LAW,
     output:
         causes=update(expand("results/{run}/causes.nc", run=run.run)),
         figures=update(
@@ -309,10 +311,11 @@ rule causes:
         "Tell what makes the phase slope scatter, and spike"
     script:
         "workflow/scripts/causes.py"
+
+
 rule estimators:
     input:
-        # a given focus needs no law
-        focus_law=f"results/{run.run}/focus_law.nc" if run.sweep.focus == "law" else [],
+        focus_law=LAW,
     output:
         estimators=update(expand("results/{run}/estimators.nc", run=run.run)),
         figures=update(
@@ -329,3 +332,72 @@ rule estimators:
         "Compare the estimators of the phase"
     script:
         "workflow/scripts/estimators.py"
+
+
+rule calibration:
+    input:
+        focus_law=LAW,
+    output:
+        calibration=update(expand("results/{run}/calibration.nc", run=run.run)),
+        figures=update(
+            expand("results/{run}/figures/calibration.{form}", run=run.run, form=("png", "svg"))
+        ),
+    log:
+        f"results/{run.run}/logs/calibration.log",
+    benchmark:
+        f"results/{run.run}/benchmarks/calibration.tsv"
+    threads: workflow.cores
+    params:
+        made_from=of_stage("calibration"),
+    message:
+        "Differentiate the phase over the diameter at a fixed focus and gap"
+    script:
+        "workflow/scripts/calibration.py"
+
+
+rule expansion:
+    input:
+        # without a series the job says so at once, and nothing is calibrated for it
+        series=SERIES,
+        calibration=f"results/{run.run}/calibration.nc" if SERIES else [],
+    output:
+        expansion=update(expand("results/{run}/expansion.nc", run=run.run)),
+        figures=update(
+            expand("results/{run}/figures/expansion.{form}", run=run.run, form=("png", "svg"))
+        ),
+    log:
+        f"results/{run.run}/logs/expansion.log",
+    benchmark:
+        f"results/{run.run}/benchmarks/expansion.tsv"
+    params:
+        made_from=of_stage("expansion"),
+    message:
+        "Turn a measured series of phases into nanometres"
+    script:
+        "workflow/scripts/expansion.py"
+
+
+rule action_potential:
+    input:
+        focus_law=LAW,
+        calibration=f"results/{run.run}/calibration.nc",
+    output:
+        action_potential=update(expand("results/{run}/action_potential.nc", run=run.run)),
+        figures=update(
+            expand(
+                "results/{run}/figures/action_potential.{form}",
+                run=run.run,
+                form=("png", "svg"),
+            )
+        ),
+    log:
+        f"results/{run.run}/logs/action_potential.log",
+    benchmark:
+        f"results/{run.run}/benchmarks/action_potential.tsv"
+    threads: workflow.cores
+    params:
+        made_from=of_stage("action_potential"),
+    message:
+        "Simulate an action potential and recover it"
+    script:
+        "workflow/scripts/action_potential.py"

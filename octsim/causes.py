@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from octsim.beats import Parts
 from octsim.pointwise import advance
 from octsim.processing import Processing
-from octsim.transform import centred, windowed
+from octsim.transform import centred_by, windowed
 
 Array = NDArray[np.float64]
 Causes = frozenset[str]
@@ -90,7 +90,7 @@ def signal(parts: Parts, present: Causes, processing: Processing) -> NDArray[np.
     spectrum = parts.beat.real + (parts.still if "envelope" in present else level)
     if "paths" in present:
         spectrum = spectrum + parts.rest
-    prepared = centred(spectrum, processing.centre) if "centre" in present else spectrum - level
+    prepared = centred_by(spectrum, processing) if "centre" in present else spectrum - level
     complete = prepared.astype(np.complex128)
     if "image" not in present:
         complete -= parts.beat.conj() / 2

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
+from octsim.calibration_config import ActionPotential, Calibration, ExpansionConfig
 from octsim.processing import Processing as Processing
 from octsim.sections import (
     DiameterRange,
@@ -233,6 +234,9 @@ class Config(Section):
     focus_law: FocusLawConfig = FocusLawConfig()
     sweep: Sweep = Sweep()
     processing: Processing = Processing()
+    calibration: Calibration = Calibration()
+    expansion: ExpansionConfig = ExpansionConfig()
+    action_potential: ActionPotential = ActionPotential()
     grid: Grid = Grid()
     cache: Cache = Cache()
     budget: Budget = Budget()

@@ -30,8 +30,8 @@ def estimator_of(config: Config, foci: Array) -> EstimatorOf:
     """Make a run's ``processing.estimator``, which works on any of the sweep's spectra.
 
     Those that know a diameter and no phase give the depth of that diameter, and the phase that the
-    thesis's prediction has for it: the slope of that is predicted_phase_slope · ∂d̂/∂d. Of fft, whose
-    phases are its components', all is NaN.
+    thesis's prediction has for it: the slope of that is predicted_phase_slope · ∂d̂/∂d. Of fft,
+    whose phases are its components', all is NaN.
 
     Parameters
     ----------

@@ -14,7 +14,10 @@ from octsim.layout import Coordinate, Layout, points_per_block
 from octsim.parts import Part, Stage, Stream
 from octsim.plates import ideal_spectra, predicted_phase_slope
 from octsim.stored import Stored
-from octsim.transform import fourier_components, optical_depths
+from octsim.transform import centred as centred
+from octsim.transform import fourier_components as fourier_components
+from octsim.transform import optical_depths as optical_depths
+from octsim.transform import windowed as windowed
 
 
 class PhaseSlopes(NamedTuple):

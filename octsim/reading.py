@@ -8,6 +8,13 @@ from octsim.grid import Axis, axes, combinations, overlap
 
 _SPIRAL = ("tracing.rays", "tracing.min_amplitude")
 
+_COMPARED = ("scene", "objective", "detector", "tracing", "spectrum", "sweep", "processing")
+# spectra as accurate as small steps need, whatever the run's scheme
+_CALIBRATED = (
+    "scene", "objective", "detector", "tracing.max_intersections", "spectrum", "processing",
+    "calibration", "sweep.focus",
+)  # fmt: skip
+
 
 def instrument(config: Config) -> tuple[str, ...]:
     """Give the keys that every stage reads that traces."""
@@ -65,30 +72,34 @@ def _read(stage: str, config: Config) -> tuple[str, ...]:
         "phase_slope": ("processing", "scene.refractive_index.neuron"),
         "stability": (*traced, *_SPIRAL, "spectrum", "sweep"),
         "causes": (*traced, "spectrum", "sweep", "processing"),
-        "estimators": (
-            *("scene", "objective", "detector", "tracing", "spectrum", "sweep", "processing"),
-        ),
-        "tradeoff": (
-            "scene", "objective", "detector", "tracing", "spectrum", "focus_law", "sweep",
-            "processing",
-        ),
-    }  # fmt: skip
+        "calibration": _CALIBRATED,
+        "expansion": ("expansion",),
+        "action_potential": (*_CALIBRATED, "action_potential"),
+        "estimators": _COMPARED,
+        "tradeoff": (*_COMPARED, "focus_law"),
+    }
     return own.get(stage, ())
 
 
 def _behind(stage: str, config: Config) -> tuple[str, ...]:
     law = _read("focus_sweep", config)
-    swept = (*_read("detections", config), *(law if config.sweep.focus == "law" else ()))
+    fitted = law if config.sweep.focus == "law" else ()
+    swept = (*_read("detections", config), *fitted)
     summed = (*swept, *_read("spectra", config))
+    calibrated = (*_CALIBRATED, *fitted)
     behind = {
         "detections": swept,
         "spectra": summed,
         "paths": (*swept, *_read("paths", config)),
         "fourier": (*summed, "processing"),
         "phase_slope": (*summed, "processing"),
+        "calibration": calibrated,
+        "expansion": (*calibrated, "expansion"),
+        "action_potential": (*calibrated, "action_potential"),
         "gaussian_fits": law,
         "focus_law": law,
-        "causes": (*swept, *keys_read("causes", config)),
+        "causes": (*_read("causes", config), *fitted),
+        "estimators": (*_COMPARED, *fitted),
     }
     return behind.get(stage, _read(stage, config))
 

@@ -1,64 +1,56 @@
-"""The slope proper: how the phase of the beat, and of each side's field, moves at a point."""
+"""The neuron's two sides, each by itself: how the phase of the light from it moves."""
 
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.beats import fields_at, parts
-from octsim.causes import Reading, weights
-from octsim.config import Config
-from octsim.pointwise import slope_at_point
+from octsim.light import Light
+from octsim.paths import path_name
+from octsim.steady import phase_change
 
-Array = NDArray[np.float64]
-Focusing = Callable[[Array], Array]
-STEP = 1e-3
-"""Half width of the differences, µm: these phases have no kinks, and 1 nm holds no noise."""
+SIDES: Mapping[str, str] = {"near": "PT CR PT", "far": "PT CT CR CT PT"}
+"""The light path that meets a side of the neuron and nothing else on its way back."""
 
 
-class BeatSlopes(NamedTuple):
-    """Phase slopes over D diameters, rad/µm = mrad/nm, with estimates of their errors."""
-
-    beat: Array
-    """Of 2 E_n* E_f, meaned over the band with the window and the phase cos(2ndk) taken off."""
-    near: Array
-    """Of the field off the glass and the near side, at the middle of the band."""
-    far: Array
-    """Of the field off the far side, at the middle of the band."""
-    beat_error: Array
+def path_field(light: Light, name: str, wavenumber: float) -> complex:
+    """Sum the rays of one light path at one wavenumber (1/µm); 0 if there are none."""
+    codes = [code for code in np.unique(light.path).tolist() if path_name(code) == name]
+    rays = np.isin(light.path, codes)
+    turns = np.exp(1j * wavenumber * light.optical_path_length[rays])
+    return complex((light.amplitude[rays] * turns).sum())
 
 
-def beat_slopes(
-    config: Config, reading: Reading, focusing: Focusing, threads: int = 1
-) -> BeatSlopes:
-    r"""Differentiate the phases of the fields themselves, with no Fourier transform between.
-
-    Along the axis the far side's path grows by 2 n_neuron d and the near side's not at all, so at
-    a held focus the slopes are 2 n_neuron k and 0 there; light off the axis and the phase at a
-    focus (Gouy) change that.
+def side_slopes(
+    trace_at: Callable[[float, float], Light],
+    diameter: float,
+    focus: float,
+    wavenumber: float,
+    step: float,
+) -> dict[str, float]:
+    """Differentiate the phase of each side's light over the diameter, the focus held.
 
     Parameters
     ----------
-    config : Config
-        The instrument; its accuracy bounds what is reached.
-    reading : Reading
-        Diameters (D,), wavenumbers and window.
-    focusing : callable
-        Foci of diameters, both µm: what follows the diameter, and what is held.
-    threads : int
-        Points traced at once.
+    trace_at : callable
+        From diameter and focus, µm, to light.
+    diameter, focus, step : float
+        µm; the diameter moves by a step to each side.
+    wavenumber : float
+        1/µm.
+
+    Returns
+    -------
+    dict
+        Of ``near`` and ``far``, mrad/nm; NaN without light.
     """
-    k = reading.wavenumber
-    weight = weights(reading.processing, k.size)
-    reference = weight * np.exp(-2j * reading.n_neuron * np.outer(reading.diameter, k))
+    before, after = trace_at(diameter - step, focus), trace_at(diameter + step, focus)
 
-    def phasors(offset: float) -> NDArray[np.complex128]:
-        moved = reading.diameter + offset
-        fields = fields_at(config, moved, focusing(moved), threads)
-        beat = (parts(fields).beat * reference).sum(axis=1)
-        return np.stack([beat, fields.near[:, k.size // 2], fields.far[:, k.size // 2]])
+    def slope(name: str) -> float:
+        fields = np.array([path_field(light, name, wavenumber) for light in (after, before)])
+        if not fields.all():
+            return np.nan
+        ends: NDArray[np.float64] = np.angle(fields)
+        return float(phase_change(ends[:1], ends[1:])[0] / (2 * step))
 
-    found = slope_at_point(phasors, min(STEP, float(reading.diameter.min()) / 4))
-    beat, near, far = found.value
-    return BeatSlopes(beat, near, far, found.error[0])
+    return {side: slope(name) for side, name in SIDES.items()}

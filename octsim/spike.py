@@ -9,6 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from octsim.band import wavenumbers
+from octsim.beat_slope import beat_slopes
 from octsim.beats import Parts, fields_at, parts
 from octsim.causes import (
     ALL,
@@ -32,9 +33,8 @@ from octsim.config import Config, FocusLine
 from octsim.datasets import make
 from octsim.plates import aliasing_step, predicted_phase_slope
 from octsim.settings import by_accuracy
-from octsim.sides import beat_slopes
 from octsim.sweep import sweep_foci
-from octsim.transform import centred
+from octsim.transform import centred_by
 
 Array = NDArray[np.float64]
 POINT = 1e-5
@@ -250,7 +250,7 @@ def _around(spectra: _Spectra, reading: Reading, near: Array) -> dict[str, Any]:
     read = reading._replace(diameter=near)
     stencil, processing = here.chosen(ALL - {"rays", "step"}), reading.processing
     intensity = stencil.at.intensity()
-    subtracted = (intensity - centred(intensity, processing.centre))[:, 0]
+    subtracted = (intensity - centred_by(intensity, processing))[:, 0]
     off = subtracted - true_level(stencil.at, processing)[:, 0]
     window = weights(processing, read.wavenumber.size)
     full = signal(stencil.at, ALL, processing)

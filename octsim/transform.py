@@ -71,10 +71,14 @@ def windowed(intensity: Array, window: Named) -> Array:
     return product
 
 
+def centred_by(intensity: Array, processing: Processing) -> Array:
+    """Subtract from spectra (..., K) the centre that a processing asks for."""
+    return centred(intensity, processing.centre, processing.window, processing.centre_degree)
+
+
 def prepared(intensity: Array, processing: Processing) -> Array:
     """Centre spectra (..., K), multiply them by the window and subtract the mean that is left."""
-    level = centred(intensity, processing.centre, processing.window, processing.centre_degree)
-    shaped = windowed(level, processing.window)
+    shaped = windowed(centred_by(intensity, processing), processing.window)
     shaped -= shaped.mean(axis=-1, keepdims=True)
     return shaped
 

@@ -57,7 +57,11 @@ BAD: list[tuple[dict[Any, Any], str]] = [
     ({"sweep": {"focus": "best"}}, "sweep.focus: 'best' given; it should be 'law', or {slope"),
     ({"sweep": {"focus": {"slope": 0.5}}}, "sweep.focus.intercept: missing"),
     ({3: 4}, "3: 3 given; Keys should be strings"),
+    ({"calibration": {"step": "1 um"}}, "calibration.step: '1 um' given; it should be less than or equal to 0.01 um"),
+    ({"calibration": {"tolerances": {"index": 1}}}, "calibration.tolerances.index: unknown key"),
+    ({"expansion": {"series": 5}}, "expansion.series: 5 given"),
     # ranges and what is impossible
+    ({"calibration": {"diameters": {"num": 3}}}, "it should be greater than or equal to 8"),
     ({"tracing": {"rays": 0}}, "tracing.rays: 0 given; it should be greater than or equal to 1"),
     ({"tracing": {"min_amplitude": 1}}, "tracing.min_amplitude: 1 given; it should be less than 1"),
     ({"spectrum": {"samples": 1}}, "spectrum.samples: 1 given"),

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from octsim.figures.style import BLUE, GREEN, SKY, component_colour, label, title
 from octsim.processing import Processing
-from octsim.transform import centred, windowed
+from octsim.transform import centred_by, windowed
 
 DIAMETER = 1.4
 """Diameter that the thesis shows, µm; the nearest of the sweep is drawn."""
@@ -17,7 +17,7 @@ DIAMETER = 1.4
 def figure_8(spectra: xr.Dataset, processing: Processing) -> Figure:
     """Draw the three stages of a spectrum's preparation (thesis fig. 8)."""
     spectrum = spectra.sel(diameter=DIAMETER, method="nearest")
-    level = centred(spectrum["intensity"].values, processing.centre)
+    level = centred_by(spectrum["intensity"].values, processing)
     # the thesis's scale: the centred spectrum reaches from −1 to 1
     level = level / max(float(np.abs(level).max()), np.finfo(float).tiny)
     shaped = windowed(level, processing.window)

@@ -3,15 +3,17 @@
 import logging
 from pathlib import Path
 
-from job import job
+from job import fitted_law, job
 
 from octsim.comparison import estimators, summary
-from octsim.datasets import read, write
+from octsim.datasets import write
 from octsim.figures.estimators import estimators_figure
 from octsim.figures.style import look, save
+from octsim.grid import without_grid
 
-with job(snakemake) as config, look():
-    law = read(snakemake.input.focus_law, "focus_law", config) if snakemake.input else None
+with job(snakemake) as given, look():
+    config = without_grid(given, "estimators")
+    law = fitted_law(snakemake, config)
     compared = estimators(config, law, snakemake.threads)
     write(compared, snakemake.output.estimators[0])
     for file in map(Path, snakemake.output.figures):

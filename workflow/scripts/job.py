@@ -17,6 +17,8 @@ from octsim.errors import OctsimError, OctsimWarning
 from octsim.loading import load_config
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from octsim.points import Points
 
 
@@ -53,6 +55,14 @@ def job(snakemake: Any) -> Iterator[Config]:
     except OctsimError as error:
         logging.error("%s", error)
         sys.exit(f"octsim: {error}")
+
+
+def fitted_law(snakemake: Any, config: Config) -> "xr.Dataset | None":
+    """Read a target's focus law, where its config needs one."""
+    from octsim.datasets import read
+
+    file = snakemake.input.focus_law
+    return read(file, "focus_law", config) if file else None
 
 
 @contextmanager

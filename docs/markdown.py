@@ -1,4 +1,4 @@
-"""Tables for the pages that are made."""
+"""Markdown, as the pages that are made need it."""
 
 
 def table(head: list[str], rows: list[list[str]]) -> str:

@@ -1,0 +1,282 @@
+"""Write the page of the calibration, from its dataset and that of the worked example."""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from markdown import table
+
+from octsim.calibrate import INDICES, RAYS
+from octsim.config import Config
+from octsim.nanometres import LARGEST, expansion, sensitivity_at
+from octsim.parameters import PARAMETERS
+from octsim.round_trip import REST, TRIALS
+
+SHOWN = (1.0, 1.2, 1.4, 1.6, 1.8, 2.0)
+EXAMPLE = (0.011, 1.4)  # rad, µm
+
+
+def rms(values: xr.DataArray) -> float:
+    """Give the root mean square."""
+    return float(np.sqrt((values**2).mean()))
+
+
+def span(values: xr.DataArray) -> str:
+    """Write values over the diameter from the first to the last."""
+    return " to ".join(f"{float(values[end]):.2f}".replace("-", "−") for end in (0, -1))
+
+
+def slopes(found: xr.Dataset) -> str:
+    """Write the slopes at some diameters."""
+    rows = []
+    for diameter in SHOWN:
+        one = found.sel(diameter=diameter, method="nearest")
+        slope = float(one["fixed_focus_phase_slope"])
+        error = float(one["fixed_focus_phase_slope_standard_error"])
+        rows.append([
+            f"{float(one['diameter']):.2f}",
+            f"{slope:.3f} ± {error:.3f}",
+            f"{1e3 * float(one['diameter_per_phase']):.2f} ± "
+            f"{1e3 * float(one['diameter_per_phase_standard_error']):.2f}",
+            f"{float(one['phase_curvature']):+.4f}",
+            f"{float(one['focus_phase_slope']):+.3f}",
+            f"{float(one['following_phase_slope']):.3f}",
+            f"{float(one['fft_fixed_focus_phase_slope']):.3f}",
+            f"{float(one['fft_following_phase_slope']):.3f}",
+        ])  # fmt: skip
+    head = [
+        "d (µm)", "**slope** (mrad/nm)", "pm/mrad", "curvature (mrad/nm²)",
+        "∂φ/∂focus (mrad/nm)", "focus follows d", "fft, focus held", "fft, focus follows d",
+    ]  # fmt: skip
+    return table(head, rows)
+
+
+def budget(found: xr.Dataset, config: Config) -> str:
+    """Write the sensitivities at some diameters, and what the tolerances make of them."""
+    ends = (SHOWN[0], EXAMPLE[1], SHOWN[-1])
+    rows = []
+    for name in PARAMETERS:
+        tolerance = getattr(config.calibration.tolerances, name)
+        index = name in INDICES
+        sensitivity = [
+            float(found[f"{name}_sensitivity"].sel(diameter=d, method="nearest")) for d in ends
+        ]
+        shares = found["budget"].sel(parameter=name) / found["fixed_focus_phase_slope"]
+        checked = found["budget_error"].sel(parameter=name).max()
+        rows.append([
+            name.replace("_", " "),
+            f"{tolerance:g}" if index else f"{1e3 * tolerance:g} nm",
+            *(f"{one:+.3g}".replace("e-0", "e-") for one in sensitivity),
+            "mrad/nm" if index else "mrad/nm per nm",
+            *(f"{100 * float(shares.sel(diameter=d, method='nearest')):.3f}" for d in ends),
+            f"{float(checked):.0e}",
+        ])  # fmt: skip
+    error = found["fixed_focus_phase_slope_standard_error"] / found["fixed_focus_phase_slope"]
+    whole = [f"**{100 * float(error.sel(diameter=d, method='nearest')):.2f}**" for d in ends]
+    rows.append(["all, and interpolation", "", "", "", "", "", *whole, ""])
+    head = [
+        "", "tolerance", *(f"sensitivity at {d:g} µm" for d in ends), "unit",
+        *(f"% of the slope at {d:g} µm" for d in ends), "two steps differ by (mrad/nm)",
+    ]  # fmt: skip
+    return table(head, rows)
+
+
+def trips(fired: xr.Dataset) -> str:
+    """Write how often the stated error covers the truth."""
+    names = ("coverage_noise", "coverage_instrument", "coverage_both")
+    rows = []
+    for number in range(fired.sizes["trip_diameter"]):
+        one = fired.isel(trip_diameter=number)
+        rows.append([
+            f"{float(one['trip_diameter']):.2f}",
+            *(f"{100 * float(one[name]):.1f}" for name in names),
+            f"{1e3 * float(one['trip_statistical_error'].mean()):.1f}",
+            f"{1e3 * float(one['trip_systematic_error'].mean()):.1f}",
+            f"{100 * float(one['trip_bias']):+.2f}",
+        ])  # fmt: skip
+    rows.append([
+        "all", *(f"**{100 * float(fired[name].mean()):.1f}**" for name in names), "", "",
+        f"**{100 * float(fired['trip_bias'].mean()):+.2f}**",
+    ])  # fmt: skip
+    head = [
+        "d (µm)", "noise alone: within 1σ (%)", "instrument alone (%)", "both (%)",
+        "statistical (pm)", "systematic (pm)", "mean error (% of the expansion)",
+    ]  # fmt: skip
+    return table(head, rows)
+
+
+def calibration_page(results: Path) -> str:
+    """Write the page."""
+    found = xr.load_dataset(results / "calibration.nc")
+    fired = xr.load_dataset(results / "action_potential.nc")
+    config = Config()
+    slope = found["fixed_focus_phase_slope"]
+    of_fft = found["fft_fixed_focus_phase_slope"] - slope
+    chain = slope + found["focus_phase_slope"] * found["slope"] - found["following_phase_slope"]
+    apart = found["far_side_phase_slope"] - found["near_side_phase_slope"]
+    one, at = expansion(*EXAMPLE, found), sensitivity_at(EXAMPLE[1], found)
+    off = 1e3 * (fired["expansion"] - fired["true_expansion"])
+    fft_off = 1e3 * (fired["fft_expansion"] - fired["true_expansion"])
+    top = fired["true_expansion"] > 0.9 * fired["true_expansion"].max()
+    stated = np.hypot(fired["statistical_error"], fired["systematic_error"])
+    return TEMPLATE.format(
+        example=f"{1e3 * float(one.expansion):.0f} ± {1e3 * float(one.systematic_error):.0f} pm",
+        example_slope=f"{at.slope:.2f} ± {at.standard_error:.2f}",
+        thesis_example=f"{1e3 * 11 / float(found['predicted_phase_slope']):.0f} pm",
+        slopes=slopes(found),
+        chain=f"{float(np.abs(chain).max()):.0e}",
+        far=span(found["far_side_phase_slope"]),
+        near=span(found["near_side_phase_slope"]),
+        sides=f"{float(np.abs(apart / slope - 1).max()):.1%}",
+        law=f"{float(found['slope']):.3f}",
+        more=f"{float((slope / found['following_phase_slope'] - 1).min()):.1%} to "
+        f"{float((slope / found['following_phase_slope'] - 1).max()):.1%}",
+        fft_rms=f"{rms(of_fft):.2f}",
+        fft_max=f"{float(np.abs(of_fft).max()):.2f}",
+        fft_percent=f"{100 * float(np.abs(of_fft / slope).max()):.1f}",
+        step=f"{1e3 * config.calibration.step:g}",
+        difference=f"{float(found['difference_error'].max()):.0e}",
+        interpolation=f"{float(found['interpolation_error'].max()):.0e}",
+        rays=RAYS,
+        rays_rms=f"{rms(found['rays_phase_slope'] - slope):.2f}",
+        rays_max=f"{float(np.abs(found['rays_phase_slope'] - slope).max()):.2f}",
+        largest=f"{LARGEST:g}",
+        straight=f"{100 * float(np.abs(found['phase_curvature'] / slope).max()) * 10 / 2:.1f}",
+        budget=budget(found, config),
+        photons=f"{config.action_potential.photons:.0e}".replace("e+0", "e"),
+        off=f"{float(off.std()):.1f}",
+        statistical=f"{1e3 * float(fired['statistical_error'].mean()):.1f}",
+        trace_covered=f"{100 * float((np.abs(off) <= 1e3 * stated).mean()):.0f}",
+        top=f"{float(off.where(top).mean()):+.1f}",
+        fft_top=f"{float(fft_off.where(top).mean()):+.1f}",
+        trips=trips(fired),
+        trials=TRIALS,
+        rest=REST,
+        seed=int(fired["seed"]),
+        many=fired["trip_expansion"].size,
+    )
+
+
+TEMPLATE = """# From milliradians to nanometres
+
+Written by `make docs` from `results/thesis/calibration.nc` and `action_potential.nc`; do not edit.
+
+A phase that moved by 11 mrad, on a neuron 1.4 µm thick: with {example_slope} mrad/nm that is
+{example} (the error is that of the calibration; that of the phase comes on top). The thesis's slope
+would have said {thesis_example}.
+
+```sh
+.venv/bin/snakemake calibration --cores 2        # calibration.nc and its figure
+.venv/bin/snakemake expansion --cores 2 --configfile mine.yaml     # a series of yours: expansion.nc
+.venv/bin/snakemake action_potential --cores 2   # the worked example below
+```
+
+```python
+calibration = octsim.calibration(config, law)  # or xarray.open_dataset("calibration.nc")
+octsim.expansion(0.011, 1.4, calibration)  # rad, µm: nm, with both errors
+```
+
+![The slope and its error](figures/calibration.png)
+
+## The focus is held
+
+An action potential does not move the objective. The thesis's slope is the change of the phase from
+one neuron to a thicker one, with the focus moved along the law in between; what an experiment sees
+is the change at a focus and a gap that stay where they are. The two differ by more than the
+thesis's oscillation: the slope at a held focus is larger, by {more}, and depends on the diameter.
+
+{slopes}
+Why: what is detected of a side of the neuron is the mean of rays of different optical paths, and
+how that mean differs from the path on the axis depends on the side's curvature and on where it lies
+from the focus. At a held focus, by itself, the light of the far side moves its phase by {far}
+mrad/nm and that of the near side by {near}, though its lowest point stays where it is; the
+difference is the slope, to {sides} (the glass's own reflection is left). In the thesis's slope the
+focus moves too, by {law} nm for each nm of diameter, which takes back most of that. The chain rule
+says just this, slope(follows) = slope(held) + {law} ∂φ/∂focus, and the columns obey it to {chain}
+mrad/nm.
+
+- **Phase**: by default a sinusoid of the held frequency 2nd, its offset and amplitude linear in k,
+  is fitted by least squares; the phase is that at the middle of the band (`octsim.steady`). The
+  thesis's Fourier transform (`calibration: {{estimator: fft}}`, here beside it) is {fft_rms}
+  mrad/nm rms away from that, at most {fft_max} ({fft_percent} %). A calibration serves the
+  estimator that it was made with, and no other. What an estimator holds (frequency, component) it
+  holds while anything moves.
+- **Numbers**: the slope is taken over ±{step} nm and ±half of that, which agree to {difference}
+  mrad/nm, on spectra of the scheme `paths` at an accuracy of 1e-8, whatever the run's own scheme:
+  over such a step the slope by {rays} rays is {rays_rms} mrad/nm rms away, {rays_max} at most, as
+  rays come and go at the detector's edge. Between the diameters cubic splines are used; from every
+  second one they are within {interpolation} mrad/nm.
+- **Curvature**: at a held focus the slope itself changes as the neuron swells. `expansion` solves φ
+  = s δ + c δ²/2; without c, 10 nm would be wrong by up to {straight} %. Beyond {largest} nm it
+  refuses.
+
+## How sure it is
+
+`calibration.tolerances` states how well each thing is known, as one standard deviation. The slope
+is differentiated by each, over two steps that have to agree (the last column, times the tolerance),
+and the parts are added in quadrature, with the errors of the interpolation and of the finite
+differences.
+
+{budget}
+The focus decides. The table takes it that the focus is looked for on the neuron itself, by the
+greatest intensity as in the law, and found within the tolerance; a diameter at rest that is
+misjudged then moves the focus with it. An NA does nothing: no light of note comes back near the
+rim.
+
+## A series of your own
+
+```yaml
+expansion: {{series: phases.csv, diameter: 1.4 um, rest: 20}}
+```
+
+CSV with the heading `time,phase` or `time (ms),phase (mrad),phase_error (mrad)`, or netCDF with
+variables of these names and `units`; s and rad without a word. Phases may be wrapped, samples may
+be missing (empty, or NaN). The first `rest` samples are of no expansion; without `phase_error`
+their scatter is the error of every sample. What can't be right is refused in a line: a diameter
+outside the table, steps too large to unwrap, too few samples at rest, times that do not increase.
+`statistical_error` is that of the phase, `systematic_error` that of the slope: the latter is the
+same fraction of every sample, so no average makes it smaller.
+
+## A worked example
+
+Neurons move by about a nanometre in about a millisecond as they fire: Hill et al. (1977) saw a
+crayfish axon contract by 1.8 nm within 1 ms, Iwasa and Tasaki (1980) squid axons swell, Akkin et
+al. (2004) less than 1 nm for 1 ms on crayfish nerves by low-coherence reflectometry, Akkin,
+Landowne and Sivaprakasam (2009) phases of squid axons by OCT, Ling et al. up to 3 nm on spiking HEK
+cells (2018) and −0.7 to 0.9 nm on neurites (2020).
+
+![A simulated action potential](figures/action_potential.png)
+
+A neuron of 1.4 µm swells by 1 nm for 1 ms (a Gaussian, at half height). 20 000 spectra a second are
+simulated at its diameter at that time, each with {photons} photons of shot noise, about what the
+pixels of a line camera hold, and turned to nanometres by the calibration. The recovered trace is
+{off} pm rms a spectrum from the truth, where {statistical} are stated; {trace_covered} % of it is
+within its stated error. Around the top (above 90 %) it is {top} pm off as a mean, the thesis's way
+(its transform's phase over its predicted slope) {fft_top} pm. How much that would be elsewhere
+changes with the diameter, on the right.
+
+**Round trips**: {trials} at each of some diameters between those of the table (seed {seed}). Each
+knows {rest} noisy spectra at rest and one at 1 nm. With the instrument as believed only the
+statistical error is stated; drawn from the tolerances (gap, indices, focus, ..., all at once)
+without noise only the systematic one counts; then both.
+
+{trips}
+A standard error should cover 68 %; {many} trips tell it to about 1.5.
+
+## References
+
+- T. Akkin, D. P. Davé, T. E. Milner, H. G. Rylander III, Detection of neural activity using
+  phase-sensitive optical low-coherence reflectometry, *Optics Express* **12**, 2377–2386 (2004).
+- T. Akkin, D. Landowne, A. Sivaprakasam, Optical coherence tomography phase measurement of
+  transient changes in squid giant axons during activity, *Journal of Membrane Biology* **231**,
+  35–46 (2009).
+- B. C. Hill, E. D. Schubert, M. A. Nokes, R. P. Michelson, Laser interferometer measurement of
+  changes in crayfish axon diameter concurrent with action potential, *Science* **196**, 426–428
+  (1977).
+- K. Iwasa, I. Tasaki, Mechanical changes in squid giant axons associated with production of action
+  potentials, *Biochemical and Biophysical Research Communications* **95**, 1328–1331 (1980).
+- T. Ling et al., Full-field interferometric imaging of propagating action potentials, *Light:
+  Science & Applications* **7**, 107 (2018).
+- T. Ling et al., High-speed interferometric imaging reveals dynamics of neuronal deformation during
+  the action potential, *PNAS* **117**, 10278–10285 (2020).
+"""

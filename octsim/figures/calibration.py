@@ -1,0 +1,63 @@
+"""The calibration: the slope at a fixed focus beside the thesis's, and what makes its error."""
+
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from octsim.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, label, title
+
+_SLOPES = (
+    # variable, colour, line, what the legend says
+    ("fft_fixed_focus_phase_slope", SKY, "-", "fft, focus held"),
+    ("following_phase_slope", ORANGE, "--", "focus follows the diameter"),
+    ("fft_following_phase_slope", VERMILION, ":", "fft, focus follows (the thesis)"),
+)
+_MARKERS = "osv^D"
+_SHOWN = 5  # of the parameters, those that count most
+
+
+def calibration_figure(table: xr.Dataset) -> Figure:
+    """Draw the slopes with their standard error, and the budget of that error."""
+    figure = Figure(figsize=(10.5, 4.6))
+    slopes, budget = figure.subplots(1, 2)
+    _draw_slopes(slopes, table)
+    _draw_budget(budget, table)
+    figure.suptitle(title(table, "Calibration of the phase"), fontsize=11)
+    return figure
+
+
+def _draw_slopes(axes: Axes, table: xr.Dataset) -> None:
+    diameter, slope = table["diameter"], table["fixed_focus_phase_slope"]
+    error = table["fixed_focus_phase_slope_standard_error"]
+    axes.fill_between(
+        diameter, slope - error, slope + error, color=BLUE, alpha=0.2, linewidth=0,
+        label="its standard error",
+    )  # fmt: skip
+    axes.plot(diameter, slope, color=BLUE, linewidth=2, label="focus held: the calibration")
+    for name, colour, line, text in _SLOPES:
+        axes.plot(diameter, table[name], color=colour, linestyle=line, label=text)
+    predicted = float(table["predicted_phase_slope"])
+    axes.axhline(predicted, color=BLACK, linestyle="-.", label=f"prediction {predicted:.2f}")
+    axes.set_xlabel(label(diameter, "diameter at rest"))
+    axes.set_ylabel(label(slope, "phase slope"))
+    axes.legend(fontsize=8)
+
+
+def _draw_budget(axes: Axes, table: xr.Dataset) -> None:
+    """Draw what each tolerance makes of the slope's error, relative to the slope."""
+    diameter, slope = table["diameter"], table["fixed_focus_phase_slope"]
+    total = table["fixed_focus_phase_slope_standard_error"] / slope
+    axes.plot(diameter, 100 * total, color=BLACK, linewidth=2, label="all together")
+    shares = 100 * table["budget"] / slope
+    most = shares.mean("diameter").values.argsort()[::-1][:_SHOWN]
+    colours = (BLUE, ORANGE, GREEN, PURPLE, VERMILION)
+    for place, colour, marker in zip(most, colours, _MARKERS, strict=True):
+        one = shares.isel(parameter=place)
+        axes.plot(
+            diameter, one, color=colour, marker=marker, markevery=5, markersize=4,
+            label=str(one["parameter"].item()).replace("_", " "),
+        )  # fmt: skip
+    axes.set_yscale("log")
+    axes.set_xlabel(label(diameter, "diameter at rest"))
+    axes.set_ylabel("Standard error of the phase slope (%)")
+    axes.legend(fontsize=8, ncols=2)

@@ -1,0 +1,44 @@
+"""An expansion over time with its statistical and systematic error."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from octsim.figures.style import BLUE, SKY, title
+
+TIME_UNIT = 1e3  # ms for each s
+
+
+def standard_error(found: xr.Dataset) -> NDArray[np.float64]:
+    """Statistical and systematic error together, nm."""
+    both: NDArray[np.float64] = np.hypot(found["statistical_error"], found["systematic_error"])
+    return both
+
+
+def draw_expansion(axes: Axes, found: xr.Dataset) -> None:
+    """Draw an expansion over time, with bands of its errors."""
+    time, change = TIME_UNIT * found["time"].values, found["expansion"].values
+    for error, colour, text in (
+        (standard_error(found), SKY, "± both errors"),
+        (found["statistical_error"].values, BLUE, "± statistical error"),
+    ):
+        axes.fill_between(
+            time, change - error, change + error, color=colour, alpha=0.35, linewidth=0, label=text
+        )
+    axes.plot(time, change, color=BLUE, linewidth=1, marker=".", markersize=3, label="recovered")
+    axes.set_xlabel("Time (ms)")
+    axes.set_ylabel("Change of the diameter (nm)")
+
+
+def expansion_figure(found: xr.Dataset) -> Figure:
+    """Draw the expansion that a measured series comes to."""
+    figure = Figure()
+    axes = figure.subplots()
+    draw_expansion(axes, found)
+    axes.set_title(
+        title(found, f"Change of a diameter of {float(found['diameter']):.4g} µm"), fontsize=11
+    )
+    axes.legend()
+    return figure
