@@ -9,11 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from calibrated import calibration_page
 from markdown import table
 from pydantic import BaseModel
 from spike import spike
-from tables import table
 
 import octsim
 from octsim.config import Config

@@ -6,8 +6,8 @@ import textwrap
 
 import numpy as np
 import xarray as xr
+from markdown import table
 from scipy.signal import find_peaks
-from tables import table
 
 from octsim.causes import weights
 from octsim.processing import Processing

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from octsim.beats import fields_at, parts
 from octsim.causes import Reading, weights
 from octsim.config import Config
-from octsim.pointwise import slope_at_point
+from octsim.differences import phase_derivative
 
 Array = NDArray[np.float64]
 Focusing = Callable[[Array], Array]
@@ -59,6 +59,6 @@ def beat_slopes(
         beat = (parts(fields).beat * reference).sum(axis=1)
         return np.stack([beat, fields.near[:, k.size // 2], fields.far[:, k.size // 2]])
 
-    found = slope_at_point(phasors, min(STEP, float(reading.diameter.min()) / 4))
+    found = phase_derivative(phasors, min(STEP, float(reading.diameter.min()) / 4))
     beat, near, far = found.value
     return BeatSlopes(beat, near, far, found.error[0])

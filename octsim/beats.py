@@ -9,15 +9,13 @@ from octsim.band import wavenumbers
 from octsim.config import Config
 from octsim.errors import OctsimError
 from octsim.light import Light
-from octsim.paths import path_name
+from octsim.sides import GLASS, SIDES, rays_on
 from octsim.simulation import tracer
 from octsim.spectrum import field
 from octsim.threads import each
 
-NEAR = ("PR", "PT CR PT")
+NEAR = (GLASS, SIDES["near"])
 """Light paths off the glass and the near side, a gap apart."""
-FAR = ("PT CT CR CT PT",)
-"""Light path off the far side."""
 
 
 class Fields(NamedTuple):
@@ -66,13 +64,12 @@ def parts(fields: Fields) -> Parts:
 
 def _summed(light: Light, wavenumber: NDArray[np.float64]) -> NDArray[np.complex128]:
     """Sum a light's rays to the fields of near and far side and all else, (3, K)."""
-    codes, row = np.unique(light.path, return_inverse=True)
-    kinds = [0 if n in NEAR else 1 if n in FAR else 2 for n in map(path_name, codes.tolist())]
-    kind = np.array(kinds, int)[row]
+    near = rays_on(light, NEAR.__contains__)
+    far = rays_on(light, SIDES["far"].__eq__)
     return np.stack(
         [
-            field(light.amplitude[kind == i], light.optical_path_length[kind == i], wavenumber)
-            for i in range(len(Fields._fields))
+            field(light.amplitude[rays], light.optical_path_length[rays], wavenumber)
+            for rays in (near, far, ~(near | far))
         ]
     )
 

@@ -3,17 +3,18 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.differences import FRACTIONS, derivative
 from octsim.errors import OctsimError
 from octsim.noise import expected_counts
 
 Array = NDArray[np.float64]
 
 AGREEMENT = 1e-3
-"""How far apart, over the largest derivative, finite differences by two steps may be."""
+"""Error of a derivative by finite differences, over the largest, that is let pass."""
 
 
-def derivative(spectra: Array, step: float) -> Array:
-    """Differentiate a spectrum by its parameter, by finite differences that check themselves.
+def checked_slope(spectra: Array, step: float) -> Array:
+    """Differentiate a spectrum by its parameter, by finite differences that are checked.
 
     Parameters
     ----------
@@ -25,23 +26,21 @@ def derivative(spectra: Array, step: float) -> Array:
     Returns
     -------
     ndarray, shape (K,)
-        The derivative in the middle, of fourth order: (8 (I₁ − I₋₁) − (I₂ − I₋₂)) / 12 h.
+        The derivative in the middle, by `octsim.differences.derivative`.
 
     Raises
     ------
     OctsimError
-        If central differences by one step and by two differ by more than `AGREEMENT`.
+        If its error is more than `AGREEMENT` of its largest value.
     """
-    one = (spectra[3] - spectra[1]) / (2 * step)
-    two = (spectra[4] - spectra[0]) / (4 * step)
-    off = float(np.abs(two - one).max() / np.abs(one).max())
+    found = derivative(2 * step * FRACTIONS, spectra)
+    off = float(found.error.max() / np.abs(found.value).max())
     if not off <= AGREEMENT:
         raise OctsimError(
             f"bound: the derivatives by steps of {step:g} and {2 * step:g} differ by {off:.1e} of "
             f"the largest, more than {AGREEMENT:g}; take a smaller step or a finer accuracy"
         )
-    found: Array = (4 * one - two) / 3
-    return found
+    return found.value
 
 
 def fisher_information(expected: Array, derivatives: Array, read_noise: float = 0.0) -> Array:

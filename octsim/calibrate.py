@@ -8,18 +8,18 @@ import xarray as xr
 from scipy.interpolate import CubicSpline
 
 from octsim.band import wavenumbers
-from octsim.config import Config, FocusLine
+from octsim.config import Config
 from octsim.datasets import flags, make
-from octsim.differences import FRACTIONS, Array, derivative, stencil
-from octsim.errors import OctsimError
+from octsim.differences import FRACTIONS, Array, derivative, stencil, wrapped
+from octsim.estimators.series import series_phases
 from octsim.light import AccuracyStatus, Light
 from octsim.parameters import PARAMETERS, moved, offsets_of
 from octsim.plates import predicted_phase_slope
+from octsim.processing import Processing
 from octsim.settings import by_accuracy, by_rays
 from octsim.sides import side_slopes
 from octsim.simulation import summer, tracer
-from octsim.steady import ESTIMATORS, PhaseOf, fourier_phase, phase_change
-from octsim.sweep import sweep_foci
+from octsim.sweep import focus_line
 from octsim.threads import each
 
 ACCURACY = 1e-8
@@ -56,23 +56,14 @@ def converged(config: Config) -> Config:
     return by_accuracy(config, ACCURACY)
 
 
-def focus_line(config: Config, law: xr.Dataset | None) -> FocusLine:
-    """Give the line that the focus follows: the config's, or the fitted law.
+def calibrating(config: Config) -> Processing:
+    """Give the run's processing with the calibration's estimator."""
+    return config.processing.model_copy(update={"estimator": config.calibration.estimator})
 
-    Raises
-    ------
-    OctsimError
-        If the law is needed and could not be fitted, or there are several.
-    """
-    if isinstance(config.sweep.focus, FocusLine):
-        return config.sweep.focus
-    if law is not None and law["slope"].dims:
-        raise OctsimError(
-            "grid: given, and so several focus laws; calibrate without a grid, or give one focus "
-            "as sweep.focus: {slope: 0.581, intercept: 69 nm}"
-        )
-    sweep_foci(config, law)  # says what is wrong with a law that does not serve
-    return FocusLine.fitted(law)
+
+def by_fft(config: Config) -> Processing:
+    """Give the run's processing with the thesis's estimator."""
+    return config.processing.model_copy(update={"estimator": "fft"})
 
 
 def calibration(config: Config, law: xr.Dataset | None = None, threads: int = 1) -> xr.Dataset:
@@ -108,11 +99,8 @@ def calibration(config: Config, law: xr.Dataset | None = None, threads: int = 1)
     diameters = settings.diameters.values()
     line = focus_line(config, law)
     foci, bench = line.at(diameters), _bench(exact, line.slope)
-    phase_of = ESTIMATORS[settings.estimator](config)
     points = zip(diameters.tolist(), foci.tolist(), strict=True)
-    rows = list(
-        each(lambda at: _measure(config, bench, phase_of, *at, line.slope), points, threads)
-    )
+    rows = list(each(lambda at: _measure(config, bench, *at, line.slope), points, threads))
     column = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     return _dataset(config, diameters, column | {"focus": foci, "slope": line.slope})
 
@@ -146,9 +134,8 @@ def _bench(exact: Config, law_slope: float) -> _Bench:
 
 
 def _measure(
-    config: Config, bench: _Bench, phase_of: PhaseOf, diameter: float, focus: float,
-    law_slope: float,
-) -> dict[str, Any]:  # fmt: skip
+    config: Config, bench: _Bench, diameter: float, focus: float, law_slope: float
+) -> dict[str, Any]:
     """Measure what the calibration holds at one diameter."""
     k, step = wavenumbers(config.spectrum), config.calibration.step
     depth = config.scene.refractive_index.neuron * diameter
@@ -172,17 +159,17 @@ def _measure(
     ]
     spectra, errors, status = zip(*(look.instrument(*look[1:]) for look in looks), strict=True)
     stack, num = np.stack(spectra), offsets.size
-    phases, of_fft = phase_of(stack, k, depth), fourier_phase(config)(stack[: 2 * num], k, depth)
+    phases = series_phases(stack, k, depth, calibrating(config))
+    of_fft = series_phases(stack[: 2 * num], k, depth, by_fft(config))
     fixed, following, focused = (
-        derivative(offsets, phase_change(part, part[num // 2]))
+        derivative(offsets, wrapped(part - part[num // 2]))
         for part in np.split(phases[: 3 * num], 3)
     )
     fft_fixed, fft_following = (
-        derivative(offsets, phase_change(part, part[num // 2])).value
-        for part in np.split(of_fft, 2)
+        derivative(offsets, wrapped(part - part[num // 2])).value for part in np.split(of_fft, 2)
     )
     pairs = phases[3 * num :].reshape(-1, 2)
-    slopes = phase_change(pairs[:, 1], pairs[:, 0]) / (2 * step)
+    slopes = wrapped(pairs[:, 1] - pairs[:, 0]) / (2 * step)
     moved_slopes = slopes[num:-1].reshape(len(PARAMETERS), num)
     found = {
         name: derivative(bench.offsets[name], of_one)

@@ -1,9 +1,10 @@
 """Sections of the config for the way from a phase to nanometres, and its worked example."""
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field
 
+from octsim.processing import PhaseEstimator
 from octsim.sections import (
     Number,
     NumberTolerance,
@@ -40,8 +41,8 @@ class Calibration(Section):
     step: Annotated[Length, Field(ge=1e-6, le=1e-2)] = key(
         "0.1 nm", "of the diameter, to each side, over which the phase is differentiated"
     )
-    estimator: Literal["sinusoid", "fft"] = key(
-        "sinusoid", "of the phase: least squares at the frequency 2nd, or the thesis's transform"
+    estimator: PhaseEstimator = key(
+        "sinusoid", "of the phase, one of processing.estimator, with the options of processing"
     )
     tolerances: Tolerances = Tolerances()
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.beats import Parts
-from octsim.pointwise import advance
+from octsim.differences import advance
 from octsim.processing import Processing
 from octsim.transform import centred_by, windowed
 
@@ -198,11 +198,3 @@ def share(part: Array, whole: Array) -> float:
     off = whole - whole.mean()
     variance = float(off @ off)
     return float(part @ off) / variance if variance > 0 else math.nan
-
-
-def trend(diameter: Array, slope: Array, degree: int = 4) -> Array:
-    """Fit a polynomial over the diameter by least squares, (D,)."""
-    fitted: Array = np.polynomial.Polynomial.fit(diameter, slope, min(degree, slope.size - 1))(
-        diameter
-    )
-    return fitted

@@ -14,6 +14,7 @@ from octsim.estimators.estimate import Array, middle
 from octsim.estimators.likelihood import Model
 from octsim.mismatch import Other, likelihood_offset, misreading, others
 from octsim.modelled import MODEL_ACCURACY, model_of_sweep
+from octsim.phase import trend
 from octsim.processing import Processing
 from octsim.resolution import RATIOS, RUNS, Point, Resolution, point_of, resolution
 from octsim.settings import by_accuracy, by_rays
@@ -26,8 +27,6 @@ SEED = 20231115
 """Of all draws; each diameter, noise and ratio has its own stream."""
 READ_NOISE = 5.0
 """Standard deviation of a dark sample, in photons, where there is read noise."""
-DEGREE = 4
-"""Of the polynomial over the diameter that is a slope's trend."""
 PLACES = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 """Diameters whose resolution is looked for, as fractions of the sweep."""
 PHASES = tuple(name for name in CONTENDERS if name not in (COMMON, LIKELIHOOD, "fringe"))
@@ -39,9 +38,7 @@ def from_trend(diameter: Array, slope: Array) -> Array:
     """Give slopes (D,) less their trend, a polynomial of the fourth degree; NaN if one is."""
     if not np.isfinite(slope).all():
         return np.full(slope.size, np.nan)
-    fitted = np.polynomial.Polynomial.fit(diameter, slope, min(DEGREE, slope.size - 1))
-    residual: Array = slope - fitted(diameter)
-    return residual
+    return slope - trend(diameter, slope)
 
 
 def estimators(

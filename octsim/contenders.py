@@ -9,6 +9,7 @@ from octsim.config import Config
 from octsim.estimators import estimate
 from octsim.estimators.estimate import Array
 from octsim.estimators.likelihood import Model, maximum_likelihood
+from octsim.estimators.series import series_phases
 from octsim.phase import phase_slopes, slope_of
 from octsim.plates import predicted_phase_slope
 from octsim.processing import Processing
@@ -75,18 +76,13 @@ def phases(
     return estimate(intensity, band.wavenumber, band.n_neuron * diameter, processing).phase
 
 
-def series_phases(
-    processing: Processing, band: Band, diameter: Array, intensity: Array, model: Model
+def of_series(
+    processing: Processing, band: Band, diameter: float, intensity: Array, model: Model
 ) -> Array:
-    """Estimate the phases (D,), rad, of a series of spectra (D, K) at one nominal diameter.
-
-    Of fft that of one component, the strongest of their mean, as phases of two can't be compared.
-    """
-    if processing.estimator == THESIS:
-        components = fourier_components(intensity, processing)
-        strongest = 1 + int(np.abs(components.mean(axis=0)[1:]).argmax())
-        return np.angle(components[:, strongest])
-    return phases(processing, band, diameter, intensity, model)
+    """Estimate the phases (T,), rad, of a series of spectra (T, K) at one nominal diameter, µm."""
+    if processing.estimator == LIKELIHOOD:
+        return band.predicted * maximum_likelihood(intensity, model, processing.read_noise)
+    return series_phases(intensity, band.wavenumber, band.n_neuron * diameter, processing)
 
 
 def slopes(

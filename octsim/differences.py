@@ -1,10 +1,10 @@
 """Derivatives by finite differences that are checked: two steps have to agree."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import KroghInterpolator
 
 Array = NDArray[np.float64]
 FRACTIONS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
@@ -16,6 +16,17 @@ class Derivative(NamedTuple):
 
     value: Array
     error: Array
+
+
+def wrapped(angle: Array) -> Array:
+    """Take whole turns off angles (rad): what is left is in [−π, π]."""
+    nearest: Array = angle - 2 * np.pi * np.rint(angle / (2 * np.pi))
+    return nearest
+
+
+def advance(before: NDArray[np.complex128], after: NDArray[np.complex128]) -> Array:
+    """Give by how much the phase moves from one complex number to another, in (−π, π]."""
+    return np.angle(after * before.conj())
 
 
 def stencil(at: float, step: float, least: float = -np.inf, most: float = np.inf) -> Array:
@@ -40,6 +51,25 @@ def derivative(offsets: Array, values: Array) -> Derivative:
     the error how far that through every second one is from it: D(h) itself, for even changes. That
     is of a coarser rule than the value, so it is on the safe side.
     """
+    # a quarter of a second to import, which only those who need it should wait for
+    from scipy.interpolate import KroghInterpolator
+
     fine = KroghInterpolator(offsets, values).derivative(0.0)
     coarse = KroghInterpolator(offsets[::2], values[::2]).derivative(0.0)
     return Derivative(np.asarray(fine), np.abs(fine - coarse))
+
+
+def phase_derivative(phasor: Callable[[float], NDArray[np.complex128]], step: float) -> Derivative:
+    """Differentiate the phase of phasors at a point, as `derivative` does.
+
+    Parameters
+    ----------
+    phasor : callable
+        Phasors, of any shape, when their parameter is moved by some amount.
+    step : float
+        Half of the differences' width; the phase moves by less than π over it.
+    """
+    offsets = step * FRACTIONS
+    here = phasor(0.0)
+    phases = [advance(here, phasor(by) if by else here) for by in offsets.tolist()]
+    return derivative(offsets, np.stack(phases))

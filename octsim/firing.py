@@ -6,16 +6,17 @@ import numpy as np
 import xarray as xr
 
 from octsim.band import wavenumbers
-from octsim.calibrate import converged, focus_line, instrument
+from octsim.calibrate import by_fft, calibrating, converged, instrument
 from octsim.config import Config
 from octsim.datasets import make
 from octsim.differences import Array
+from octsim.estimators.series import series_phases
 from octsim.nanometres import expansion
-from octsim.photons import shot_noise
+from octsim.noise import shot_noise
 from octsim.plates import predicted_phase_slope
 from octsim.round_trip import round_trips, trip_diameters
 from octsim.series import Series, change_from_rest
-from octsim.steady import ESTIMATORS, fourier_phase
+from octsim.sweep import focus_line
 from octsim.threads import each
 
 DURATION = 1e-3
@@ -64,10 +65,13 @@ def action_potential(
     spectra = np.stack(list(each(lambda diameter: look(diameter, focus)[0], grown, threads)))
     counted = shot_noise(spectra, settings.photons, np.random.default_rng(settings.seed))
     depth = config.scene.refractive_index.neuron * settings.diameter
-    phase_of = ESTIMATORS[config.calibration.estimator](config)
-    change = change_from_rest(Series(time, phase_of(counted, k, depth)), REST)
+    phase, of_fft = (
+        series_phases(counted, k, depth, processing)
+        for processing in (calibrating(config), by_fft(config))
+    )
+    change = change_from_rest(Series(time, phase), REST)
     found = expansion(change.phase, settings.diameter, calibration, change.error)
-    of_fft = change_from_rest(Series(time, fourier_phase(config)(counted, k, depth)), REST)
+    fft_change = change_from_rest(Series(time, of_fft), REST)
     predicted = predicted_phase_slope(config.scene.refractive_index.neuron, k[0], k[-1])
     return make(
         "action_potential",
@@ -79,7 +83,7 @@ def action_potential(
             "expansion": ("time", found.expansion),
             "statistical_error": ("time", found.statistical_error),
             "systematic_error": ("time", found.systematic_error),
-            "fft_expansion": ("time", 1e3 * of_fft.phase / predicted),
+            "fft_expansion": ("time", 1e3 * fft_change.phase / predicted),
             "diameter": settings.diameter,
             "focus": focus,
             "seed": settings.seed,

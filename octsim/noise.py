@@ -7,8 +7,17 @@ Array = NDArray[np.float64]
 
 
 def expected_counts(intensity: Array, photons: float) -> Array:
-    """Scale spectra (..., K) so that each is expected to hold a number of photons."""
-    counts: Array = photons * intensity / intensity.sum(axis=-1, keepdims=True)
+    """Scale spectra (..., K) so that one is expected to hold a number of photons, as a mean.
+
+    The scale is the same for all, so what changes in their brightness stays.
+    """
+    counts: Array = intensity * (photons / intensity.sum(axis=-1).mean())
+    return counts
+
+
+def shot_noise(intensity: Array, photons: float, generator: np.random.Generator) -> Array:
+    """Count the photons of spectra (..., K): Poisson, with `photons` in one as a mean."""
+    counts: Array = generator.poisson(expected_counts(intensity, photons)).astype(float)
     return counts
 
 
@@ -22,7 +31,7 @@ def measured_counts(
     intensity : ndarray, shape (..., K)
         Noise-free spectra, in any unit.
     photons : float
-        Expected number of photons detected in a spectrum, over all samples.
+        Expected number of photons detected in a spectrum, over all samples, as a mean.
     read_noise : float
         Standard deviation of a dark sample, in photons.
     generator : numpy.random.Generator
@@ -33,7 +42,7 @@ def measured_counts(
     ndarray, shape (..., K)
         Counts of photons; with read noise they can be negative.
     """
-    counts = generator.poisson(expected_counts(intensity, photons)).astype(float)
+    counts = shot_noise(intensity, photons, generator)
     return counts + read_noise * generator.standard_normal(counts.shape)
 
 

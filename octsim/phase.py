@@ -5,10 +5,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
+from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from octsim.band import wavenumbers
 from octsim.config import Config
+from octsim.differences import wrapped
 from octsim.estimation import estimator_of, ideal_phases
 from octsim.layout import Coordinate, Layout, points_per_block
 from octsim.parts import Part, Stage, Stream
@@ -18,6 +20,8 @@ from octsim.transform import centred as centred
 from octsim.transform import fourier_components as fourier_components
 from octsim.transform import optical_depths as optical_depths
 from octsim.transform import windowed as windowed
+
+_DEGREE = 4
 
 
 class PhaseSlopes(NamedTuple):
@@ -37,9 +41,7 @@ def turns(phase: NDArray[np.float64]) -> NDArray[np.float64]:
     This is the step of the unwrapped phase, but as it adds nothing up it does not depend on where a
     sweep begins.
     """
-    step = np.diff(phase, axis=0)
-    nearest: NDArray[np.float64] = step - 2 * np.pi * np.rint(step / (2 * np.pi))
-    return nearest
+    return wrapped(np.diff(phase, axis=0))
 
 
 def gradient(step: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -80,6 +82,13 @@ def phase_slopes(
 def slope_of(diameter: NDArray[np.float64], phase: NDArray[np.float64]) -> NDArray[np.float64]:
     """Differentiate phases (D,) over diameters (D,), µm, by central differences."""
     return gradient(turns(phase), diameter)
+
+
+def trend(diameter: NDArray[np.float64], slope: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Fit a polynomial of the fourth degree over the diameter to slopes by least squares, (D,)."""
+    degree = min(_DEGREE, slope.size - 1)
+    fitted: NDArray[np.float64] = Polynomial.fit(diameter, slope, degree)(diameter)
+    return fitted
 
 
 @Stage

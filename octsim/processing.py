@@ -79,12 +79,16 @@ class Esprit(Section):
     )
 
 
+PhaseEstimator = Literal["fft", "zero_padded", "sinusoid", "hilbert", "esprit", "fringe"]
+"""Those that need spectra alone."""
+
+
 class Processing(Section):
     """From a spectrum to a phase."""
 
-    estimator: Literal[
-        "fft", "zero_padded", "sinusoid", "hilbert", "esprit", "fringe", "maximum_likelihood"
-    ] = key("fft", "of the phase, or of the diameter; fft is the thesis's Fourier transform")
+    estimator: PhaseEstimator | Literal["maximum_likelihood"] = key(
+        "fft", "of the phase, or of the diameter; fft is the thesis's Fourier transform"
+    )
     centre: Literal["midpoint", "mean", "weighted", "polynomial"] = key(
         "midpoint",
         "what is subtracted before the window: (max + min)/2, the mean, the mean weighted by the "

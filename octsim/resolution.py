@@ -4,9 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from octsim.bound import derivative, diameter_bound
+from octsim.bound import checked_slope, diameter_bound
 from octsim.config import Config
-from octsim.contenders import LIKELIHOOD, Band, series_phases
+from octsim.contenders import LIKELIHOOD, Band, of_series
+from octsim.differences import wrapped
 from octsim.estimators.estimate import Array
 from octsim.estimators.likelihood import Model
 from octsim.modelled import modelled
@@ -61,7 +62,7 @@ def point_of(config: Config, diameter: float, focus: float) -> Point:
     spectra = modelled(exact, at, np.full(at.size, focus)).intensity
     about: Array = diameter + _MODEL
     model = modelled(config, about, np.full(about.size, focus))
-    return Point(diameter, spectra, derivative(spectra, STEP), model)
+    return Point(diameter, spectra, checked_slope(spectra, STEP), model)
 
 
 def resolution(
@@ -114,17 +115,10 @@ def _error(processing: Processing, band: Band, point: Point, clean: Array, count
     """Give the root mean square error of the diameter, µm; NaN if a run has no estimate."""
     # one series, so that what is common to it (a component, an envelope) is so to both
     series = np.concatenate([clean, counts])
-    here = np.full(series.shape[0], point.diameter)
-    found = series_phases(processing, band, here, series, point.model)
+    found = of_series(processing, band, point.diameter, series, point.model)
     known, noisy = found[: clean.shape[0]], found[clean.shape[0] :]
     if processing.estimator == LIKELIHOOD:
         known[2] = band.predicted * point.diameter  # not of the model: the truth
-    slope = _wrapped(known[4] - known[0]) / (4 * STEP)
-    off = _wrapped(noisy - known[2])
+    slope = wrapped(known[4] - known[0]) / (4 * STEP)
+    off = wrapped(noisy - known[2])
     return float(np.sqrt(np.mean(off**2)) / abs(slope))
-
-
-def _wrapped(phase: Array) -> Array:
-    """Bring phases into (−π, π]."""
-    within: Array = np.angle(np.exp(1j * phase))
-    return within

@@ -6,14 +6,15 @@ import numpy as np
 import xarray as xr
 
 from octsim.band import wavenumbers
-from octsim.calibrate import Instrument, converged, focus_line, instrument
+from octsim.calibrate import Instrument, calibrating, converged, instrument
 from octsim.config import Config
 from octsim.differences import Array
+from octsim.estimators.series import series_phases
 from octsim.nanometres import Expansion, expansion
+from octsim.noise import shot_noise
 from octsim.parameters import Place, drawn
-from octsim.photons import shot_noise
 from octsim.series import Series, change_from_rest
-from octsim.steady import ESTIMATORS
+from octsim.sweep import focus_line
 from octsim.threads import each
 
 TRIALS = 200
@@ -58,8 +59,7 @@ def _recover(
     if generator is not None:
         spectra = shot_noise(spectra, config.action_potential.photons, generator)
     depth = config.scene.refractive_index.neuron * diameter
-    phase_of = ESTIMATORS[config.calibration.estimator](config)
-    phase = phase_of(spectra, wavenumbers(config.spectrum), depth)
+    phase = series_phases(spectra, wavenumbers(config.spectrum), depth, calibrating(config))
     series = Series(np.arange(REST + 1.0), phase)
     change = change_from_rest(series, REST)
     found = expansion(change.phase[-1:], diameter, calibration, change.error[-1:])

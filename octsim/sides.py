@@ -1,24 +1,36 @@
-"""The neuron's two sides, each by itself: how the phase of the light from it moves."""
+"""The neuron's two sides, each by itself: the light from it, and how its phase moves."""
 
 from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.differences import wrapped
 from octsim.light import Light
 from octsim.paths import path_name
-from octsim.steady import phase_change
 
+GLASS = "PR"
+"""The light path off the glass, which meets no neuron."""
 SIDES: Mapping[str, str] = {"near": "PT CR PT", "far": "PT CT CR CT PT"}
 """The light path that meets a side of the neuron and nothing else on its way back."""
 
 
-def path_field(light: Light, name: str, wavenumber: float) -> complex:
-    """Sum the rays of one light path at one wavenumber (1/µm); 0 if there are none."""
-    codes = [code for code in np.unique(light.path).tolist() if path_name(code) == name]
-    rays = np.isin(light.path, codes)
+def rays_on(light: Light, chosen: Callable[[str], bool]) -> NDArray[np.bool_]:
+    """Tell which rays (R,) are on light paths that are chosen by name."""
+    codes, path = np.unique(light.path, return_inverse=True)
+    kept = np.array([chosen(path_name(code)) for code in codes.tolist()], bool)
+    return kept[path]
+
+
+def field_of(light: Light, rays: NDArray[np.bool_], wavenumber: float) -> complex:
+    """Sum some of the rays, (R,), at one wavenumber (1/µm); 0 if there are none."""
     turns = np.exp(1j * wavenumber * light.optical_path_length[rays])
     return complex((light.amplitude[rays] * turns).sum())
+
+
+def path_field(light: Light, name: str, wavenumber: float) -> complex:
+    """Sum the rays of one light path at one wavenumber (1/µm); 0 if there are none."""
+    return field_of(light, rays_on(light, name.__eq__), wavenumber)
 
 
 def side_slopes(
@@ -51,6 +63,6 @@ def side_slopes(
         if not fields.all():
             return np.nan
         ends: NDArray[np.float64] = np.angle(fields)
-        return float(phase_change(ends[:1], ends[1:])[0] / (2 * step))
+        return float(wrapped(ends[0] - ends[1]) / (2 * step))
 
     return {side: slope(name) for side, name in SIDES.items()}

@@ -25,15 +25,15 @@ from octsim.causes import (
     signal,
     slopes,
     strongest,
-    trend,
     true_level,
     weights,
 )
 from octsim.config import Config, FocusLine
 from octsim.datasets import make
+from octsim.phase import trend
 from octsim.plates import aliasing_step, predicted_phase_slope
 from octsim.settings import by_accuracy
-from octsim.sweep import sweep_foci
+from octsim.sweep import focus_line, sweep_foci
 from octsim.transform import centred_by
 
 Array = NDArray[np.float64]
@@ -105,9 +105,7 @@ def causes(config: Config, law: xr.Dataset | None = None, threads: int = 1) -> x
     OctsimError
         If the law is needed and there is none, or nothing beats at one of the diameters.
     """
-    foci = sweep_foci(config, law)
-    focus = config.sweep.focus
-    line = focus if isinstance(focus, FocusLine) else FocusLine.fitted(law)
+    foci, line = sweep_foci(config, law), focus_line(config, law)
     spectra = _Spectra(config, line, threads, config.sweep.diameters.values())
     k, n_neuron = wavenumbers(config.spectrum), config.scene.refractive_index.neuron
     steps = _steps(spectra.diameter, aliasing_step(n_neuron, k[0], k[-1]))

@@ -79,6 +79,25 @@ def sweep_foci(config: Config, law: xr.Dataset | None) -> NDArray[np.float64]:
     return foci
 
 
+def focus_line(config: Config, law: xr.Dataset | None) -> FocusLine:
+    """Give the line that the focus follows: the config's, or the fitted law.
+
+    Raises
+    ------
+    OctsimError
+        If the law is needed and could not be fitted, or there are several.
+    """
+    if isinstance(config.sweep.focus, FocusLine):
+        return config.sweep.focus
+    if law is not None and law["slope"].dims:
+        raise OctsimError(
+            "grid: given, and so several focus laws; do this without a grid, or give one focus as "
+            "sweep.focus: {slope: 0.581, intercept: 69 nm}"
+        )
+    sweep_foci(config, law)  # says what is wrong with a law that does not serve
+    return FocusLine.fitted(law)
+
+
 @Stage
 def detections(
     config: Config,

@@ -6,17 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.light import Light
-from octsim.paths import path_name
 from octsim.phase import slope_of
+from octsim.sides import field_of, rays_on
 
 Array = NDArray[np.float64]
 
 
 def goes_through(light: Light) -> NDArray[np.bool_]:
     """Tell which rays (D,) have been inside the cylinder."""
-    codes, path = np.unique(light.path, return_inverse=True)
-    inside = np.array(["CT" in path_name(code) for code in codes.tolist()], bool)
-    return inside[path]
+    return rays_on(light, lambda name: "CT" in name)
 
 
 def path_phase(light: Light, wavenumber: float) -> float:
@@ -26,8 +24,8 @@ def path_phase(light: Light, wavenumber: float) -> float:
         - \arg \sum_{\mathrm{not}} E_j e^{ik\Lambda_j}
     """
     inside = goes_through(light)
-    fields = light.amplitude * np.exp(1j * wavenumber * light.optical_path_length)
-    return float(np.angle(fields[inside].sum() * fields[~inside].sum().conj()))
+    within, outside = (field_of(light, rays, wavenumber) for rays in (inside, ~inside))
+    return float(np.angle(within * np.conj(outside)))
 
 
 def mean_path_difference(light: Light) -> float:

@@ -14,11 +14,12 @@ from octsim.band import wavenumbers
 from octsim.bound import phase_bound
 from octsim.comparison import estimators, from_trend, summary
 from octsim.config import Config, Processing
-from octsim.contenders import COMMON, CONTENDERS, Band, contenders, series_phases, slopes
+from octsim.contenders import COMMON, CONTENDERS, Band, contenders, slopes
 from octsim.errors import OctsimError
 from octsim.estimators import ESTIMATORS, estimate
 from octsim.estimators.estimate import middle, place
 from octsim.estimators.likelihood import Model, maximum_likelihood
+from octsim.estimators.series import series_phases
 from octsim.estimators.transformed import peak_depths
 from octsim.figures.estimators import estimators_figure
 from octsim.figures.style import look
@@ -313,8 +314,7 @@ def test_a_series_by_fft_is_of_one_component() -> None:
     depth = 0.5 * (np.pi / (K[-1] - K[0])) * 3.0  # between two components
     phase = np.linspace(0, 0.3, 40)[:, np.newaxis]
     spectra = np.cos(2 * depth * (K - middle(K)) + phase)
-    model = Model(np.ones(4), spectra[:4])
-    found = series_phases(Processing(), Band(1.39, K), np.full(40, 1.5), spectra, model)
+    found = series_phases(spectra, K, 1.5 * 1.39, Processing())
     assert np.abs(np.diff(np.unwrap(found))).max() < 0.05
 
 

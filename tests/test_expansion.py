@@ -10,11 +10,13 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import octsim
-from octsim import round_trip
+from octsim import calibrate, round_trip
 from octsim.band import wavenumbers
 from octsim.calibrate import converged, instrument
 from octsim.config import Config
+from octsim.differences import wrapped
 from octsim.errors import ConfigError, DatasetError, OctsimError
+from octsim.estimators.series import series_phases
 from octsim.figures.action_potential import action_potential_figure
 from octsim.figures.expansion import expansion_figure
 from octsim.figures.style import look, save
@@ -22,9 +24,8 @@ from octsim.firing import DURATION, INTERVAL, SAMPLES, action_potential, summary
 from octsim.loading import load_config
 from octsim.nanometres import LARGEST, expansion, sensitivity_at, series_expansion, series_of
 from octsim.nanometres import summary as expansion_summary
-from octsim.photons import shot_noise
+from octsim.noise import shot_noise
 from octsim.series import Series, change_from_rest, read_series
-from octsim.steady import phase_change, sinusoid_phase
 
 Array = NDArray[np.float64]
 ROOT = Path(__file__).parent.parent
@@ -229,11 +230,13 @@ def test_the_phase_of_a_thicker_neuron_gives_its_thickness(
     focus, k = 0.58 * 1.4 + 0.066, wavenumbers(config.spectrum)
     see = instrument(converged(config))
     spectra = np.stack([see(1.4 + by / 1e3, focus)[0] for by in (0.0, change)])
-    rest, moved = sinusoid_phase(spectra, k, 1.4 * config.scene.refractive_index.neuron)
-    found = expansion(phase_change(moved, rest), 1.4, calibrated)
+    rest, moved = series_phases(
+        spectra, k, 1.4 * config.scene.refractive_index.neuron, calibrate.calibrating(config)
+    )
+    found = expansion(wrapped(moved - rest), 1.4, calibrated)
     assert float(found.expansion) == pytest.approx(change, rel=1e-3)
     # a straight line would not do for 10 nm
-    straight = 1e3 * phase_change(moved, rest) / sensitivity_at(1.4, calibrated).slope
+    straight = 1e3 * wrapped(moved - rest) / sensitivity_at(1.4, calibrated).slope
     assert abs(float(found.expansion) - change) < 0.2 * abs(float(straight) - change)
 
 

@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import norm, poisson
 
-from octsim.bound import derivative, diameter_bound, fisher_information, phase_bound
+from octsim.bound import checked_slope, diameter_bound, fisher_information, phase_bound
 from octsim.errors import OctsimError
 from octsim.noise import expected_counts, measured_counts, photons_for, signal_to_noise
 
@@ -102,7 +102,7 @@ def test_a_diameter_s_bound_falls_with_the_root_of_the_photons() -> None:
         return np.asarray(2 - np.cos(2 * 1.39 * d * K))
 
     step = 1e-4
-    slope = derivative(np.stack([spectra(1.5 + i * step) for i in range(-2, 3)]), step)
+    slope = checked_slope(np.stack([spectra(1.5 + i * step) for i in range(-2, 3)]), step)
     exact = 2 * 1.39 * K * np.sin(2 * 1.39 * 1.5 * K)
     assert np.abs(slope - exact).max() < 1e-9 * np.abs(exact).max() + 1e-9
     dim, bright = (diameter_bound(spectra(1.5), slope, n) for n in (1e3, 1e5))
@@ -113,4 +113,4 @@ def test_a_diameter_s_bound_falls_with_the_root_of_the_photons() -> None:
 def test_a_derivative_that_two_steps_disagree_on_is_refused() -> None:
     wild = np.cos(np.arange(5)[:, np.newaxis] * 2.0 + K)
     with pytest.raises(OctsimError, match="take a smaller step or a finer accuracy"):
-        derivative(wild, 1.0)
+        checked_slope(wild, 1.0)
