@@ -196,8 +196,8 @@ says just this, slope(follows) = slope(held) + {law} ∂φ/∂focus, and the col
 mrad/nm.
 
 - **Phase**: by default a sinusoid of the held frequency 2nd, its offset and amplitude linear in k,
-  is fitted by least squares; the phase is that at the middle of the band (`octsim.steady`). The
-  thesis's Fourier transform (`calibration: {{estimator: fft}}`, here beside it) is {fft_rms}
+  is fitted by least squares, weighted for shot noise; the phase is that at the middle of the band
+  ([estimators.md](estimators.md), with the options of `processing`). The thesis's Fourier transform (`calibration: {{estimator: fft}}`, here beside it) is {fft_rms}
   mrad/nm rms away from that, at most {fft_max} ({fft_percent} %). A calibration serves the
   estimator that it was made with, and no other. What an estimator holds (frequency, component) it
   holds while anything moves.

@@ -1,20 +1,19 @@
 """The page of the estimators, written from `estimators.nc`; `generate.py` calls it."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from markdown import table
 
 from octsim.comparison import PHASES
 from octsim.contenders import CONTENDERS
 from octsim.resolution import STEP
 
-Table = Callable[[list[str], list[list[str]]], str]
 
-
-def page(compared: xr.Dataset, table: Table) -> str:
+def estimators_page(compared: xr.Dataset) -> str:
     """Write the page."""
     compared = compared.isel(estimator=compared["estimator"] != "run")
     each = [compared.isel(estimator=i) for i in range(compared.sizes["estimator"])]
@@ -53,10 +52,10 @@ def page(compared: xr.Dataset, table: Table) -> str:
             [[f"`{name}`", _options(given)] for name, given in CONTENDERS.items()],
         ),
         slopes=table(SLOPE_HEAD, [_slopes(one) for one in each]),
-        shot=_noise(compared, "resolution", "", table),
-        read_noise=_noise(compared, "read_noise_resolution", "read_noise_", table),
-        over=_over(compared, "resolution_over_bound", table),
-        misread=_misread(compared, each, table),
+        shot=_noise(compared, "resolution", ""),
+        read_noise=_noise(compared, "read_noise_resolution", "read_noise_"),
+        over=_over(compared, "resolution_over_bound"),
+        misread=_misread(compared, each),
     )
 
 
@@ -85,7 +84,7 @@ def _slopes(one: xr.Dataset) -> list[str]:
     ]
 
 
-def _noise(compared: xr.Dataset, name: str, prefix: str, table: Table) -> str:
+def _noise(compared: xr.Dataset, name: str, prefix: str) -> str:
     head = ["", *(f"{ratio:g} dB" for ratio in compared["snr"].values)]
     rows = [
         ["photons", *(f"{float(v):.3g}" for v in compared[f"{prefix}photons"])],
@@ -101,7 +100,7 @@ def _noise(compared: xr.Dataset, name: str, prefix: str, table: Table) -> str:
     return table(head, rows)
 
 
-def _over(compared: xr.Dataset, name: str, table: Table) -> str:
+def _over(compared: xr.Dataset, name: str) -> str:
     """Tabulate the largest ratio of error to bound over the noise's ratios, for each diameter."""
     worst = compared[name].max("snr", skipna=False)
     head = ["", *(f"{d:.3g} µm" for d in compared["noise_diameter"].values)]
@@ -114,7 +113,7 @@ def _over(compared: xr.Dataset, name: str, table: Table) -> str:
     )
 
 
-def _misread(compared: xr.Dataset, each: list[xr.Dataset], table: Table) -> str:
+def _misread(compared: xr.Dataset, each: list[xr.Dataset]) -> str:
     scenes = [str(scene) for scene in compared["scene"].values]
     rows = [
         [

@@ -365,7 +365,16 @@ if __name__ == "__main__":
     (DOCS / "figures").mkdir(exist_ok=True)
     (DOCS / "stability.md").write_text(stability(), encoding="utf-8")
     (DOCS / "tradeoff.md").write_text(tradeoff(), encoding="utf-8")
-    page = spike(xr.load_dataset(RESULTS / "causes.nc"))
-    (DOCS / "spike.md").write_text(page, encoding="utf-8")
-    for name in ("figure_12.png", "stability.png", "tradeoff.png", "spike.png", "causes.png"):
-        shutil.copy(RESULTS / "figures" / name, DOCS / "figures" / name)
+    pages = {
+        "spike": lambda: spike(xr.load_dataset(RESULTS / "causes.nc")),
+        "estimators": lambda: estimators_page(xr.load_dataset(RESULTS / "estimators.nc")),
+        "calibration": lambda: calibration_page(RESULTS),
+    }
+    for name, page in pages.items():
+        (DOCS / f"{name}.md").write_text(page(), encoding="utf-8")
+    drawn = (
+        "figure_12", "stability", "tradeoff", "causes", "spike", "estimators", "calibration",
+        "action_potential",
+    )  # fmt: skip
+    for figure in drawn:
+        shutil.copy(RESULTS / "figures" / f"{figure}.png", DOCS / "figures" / f"{figure}.png")

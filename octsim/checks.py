@@ -58,6 +58,12 @@ def impossible(config: Config) -> Iterator[str]:
             f"spectrum.wavelength.min: {format_length(band.min)} given; it must be below "
             f"spectrum.wavelength.max = {format_length(band.max)}"
         )
+    processing = config.processing
+    if processing.estimator == "sinusoid" and processing.sinusoid.envelope == "common":
+        yield (
+            "processing.sinusoid.envelope: 'common' given, which is for a series at one diameter; "
+            "a sweep needs 'each'"
+        )
     for key, span in _ranges(config):
         if not span.start < span.stop:
             given = span.model_dump(mode="json")

@@ -14,6 +14,9 @@ from octsim.meanings import MEANINGS
 from octsim.overlays import merge, preset
 from octsim.problems import known_keys
 
+FIXED = ("run", "calibration", "expansion", "action_potential", "grid", "cache", "budget")
+"""Sections that a run has once: what no stage over the grid depends on."""
+
 
 class Axis(NamedTuple):
     """One dimension of the grid."""
@@ -63,7 +66,7 @@ def dimension_name(key: str) -> str:
     ('core_diameter', 'wavelength_min')
     """
     parts = key.split(".")
-    known = [other.split(".") for other in known_keys()]
+    known = [parts for parts in (k.split(".") for k in known_keys()) if parts[0] not in FIXED]
     # below a subsection the last part alone says little: neuron, min
     for count in range(min(len(parts) - 1, 2), len(parts)):
         tail = parts[-count:]

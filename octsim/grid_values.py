@@ -10,14 +10,13 @@ from pydantic import ValidationError
 from octsim.checks import impossible
 from octsim.config import Config, Grid
 from octsim.errors import ConfigError
-from octsim.grid import as_text, axes, combinations, config_at, overlap
+from octsim.grid import FIXED, as_text, axes, combinations, config_at, overlap
 from octsim.problems import explain, known_keys, nearest_key
 from octsim.sections import DECIMALS
 from octsim.units import format_length, parse_length
 
 MOST = 100_000
 """Combinations of one grid."""
-_FIXED = ("run", "grid", "cache", "budget")
 _SHOWN = 5  # problems of combinations that are listed
 
 
@@ -88,7 +87,7 @@ def _listed(key: str, given: Any) -> list[Any]:
             f"grid.{key}: unknown key; write it with dots, as in detector.core_diameter: [...]; "
             f"the nearest known one is {nearest_key(key)}"
         )
-    if key.split(".")[0] in _FIXED:
+    if key.split(".")[0] in FIXED:
         raise ConfigError(f"grid.{key}: can't be varied; a run has one")
     if isinstance(given, list | tuple):
         if not given:

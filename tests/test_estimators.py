@@ -343,3 +343,30 @@ def test_the_comparison_holds_every_estimator_and_draws() -> None:
     assert "Cramér–Rao" in summary(found)
     with look():
         assert len(estimators_figure(found).axes) == 3
+
+
+@pytest.mark.parametrize("centre", ["weighted", "polynomial"])
+@pytest.mark.parametrize("name", ESTIMATORS)
+def test_a_spectrum_s_phase_does_not_depend_on_its_neighbours(name: str, centre: str) -> None:
+    diameter = np.linspace(0.6, 6.0, 9)
+    noise = np.random.default_rng(7).normal(0, 0.01, (9, K.size))
+    spectra = 2 + 0.1 * K + np.cos(2 * 1.39 * np.outer(diameter, K)) + noise
+    for depth in ("nominal", "peak"):
+        asked = {"estimator": name, "centre": centre, "depth": depth}
+        processing = Processing.model_validate(asked)
+        whole = estimate(spectra, K, 1.39 * diameter, processing)
+        for rows in (slice(0, 1), slice(2, 5), slice(5, 9)):
+            some = estimate(spectra[rows], K, 1.39 * diameter[rows], processing)
+            assert np.array_equal(some.phase, whole.phase[rows], equal_nan=True)
+            assert np.array_equal(some.depth, whole.depth[rows], equal_nan=True)
+
+
+def test_likelihood_of_a_spectrum_does_not_depend_on_its_neighbours() -> None:
+    known = np.linspace(0.9, 1.6, 80)
+    model = Model(known, 2 + np.cos(2 * 1.39 * np.outer(known, K)))
+    counts = np.random.default_rng(3).poisson(50 * model.intensity[10:70:7]).astype(float)
+    counts *= np.linspace(1, 9, len(counts))[:, np.newaxis]
+    for read_noise in (0.0, 4.0):
+        whole = maximum_likelihood(counts, model, read_noise)
+        one = [maximum_likelihood(row[np.newaxis], model, read_noise)[0] for row in counts]
+        assert one == whole.tolist()
