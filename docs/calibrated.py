@@ -196,11 +196,11 @@ says just this, slope(follows) = slope(held) + {law} ∂φ/∂focus, and the col
 mrad/nm.
 
 - **Phase**: by default a sinusoid of the held frequency 2nd, its offset and amplitude linear in k,
-  is fitted by least squares, weighted for shot noise; the phase is that at the middle of the band
-  ([estimators.md](estimators.md), with the options of `processing`). The thesis's Fourier transform (`calibration: {{estimator: fft}}`, here beside it) is {fft_rms}
-  mrad/nm rms away from that, at most {fft_max} ({fft_percent} %). A calibration serves the
-  estimator that it was made with, and no other. What an estimator holds (frequency, component) it
-  holds while anything moves.
+  is fitted by least squares, with the weights of shot noise; `calibration.estimator` names another
+  ([estimators.md](estimators.md)), with its options in `processing`. The thesis's Fourier transform
+  (`calibration: {{estimator: fft}}`, here beside it) is {fft_rms} mrad/nm rms away from that, at
+  most {fft_max} ({fft_percent} %). A calibration serves the estimator that it was made with, and no
+  other. What an estimator holds (frequency, component) it holds while anything moves.
 - **Numbers**: the slope is taken over ±{step} nm and ±half of that, which agree to {difference}
   mrad/nm, on spectra of the scheme `paths` at an accuracy of 1e-8, whatever the run's own scheme:
   over such a step the slope by {rays} rays is {rays_rms} mrad/nm rms away, {rays_max} at most, as

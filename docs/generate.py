@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from calibrated import calibration_page
+from estimators_page import estimators_page
 from markdown import table
 from pydantic import BaseModel
 from spike import spike
