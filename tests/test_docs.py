@@ -27,9 +27,9 @@ def test_the_python_example_runs(capsys: pytest.CaptureFixture[str]) -> None:
     assert unit == "mrad/nm"
 
 
-def test_the_example_config_is_a_valid_one() -> None:
-    (example,) = blocks("yaml")
-    assert load_config(yaml.safe_load(example)).run == "thick"
+def test_the_example_configs_are_valid_ones() -> None:
+    runs = [load_config(yaml.safe_load(example)).run for example in blocks("yaml")]
+    assert runs == ["thick", "sweep"]
 
 
 def test_every_dependency_is_justified() -> None:
