@@ -1,4 +1,4 @@
-"""What a large grid takes: time a point, memory, and how much of it is tracing and processing.
+"""What a large grid takes: time a point, memory, and the share of tracing and processing.
 
 Each count of combinations runs in a process of its own, stage by stage, streamed to files as in a
 run, without a cache, so that all is traced. `make bench-sweeps`; some minutes on two cores.
@@ -20,6 +20,7 @@ from octsim.netcdf import write_stream
 from octsim.parts import Part, Stream
 from octsim.phase import fourier, phase_slope
 from octsim.shares import light_paths
+from octsim.stored import Stored
 from octsim.sweep import detections, spectra
 
 COUNTS = ((10, 4), (25, 10), (25, 40))
@@ -31,13 +32,22 @@ GRID: dict[str, Any] = {
 
 
 class Making:
-    """Processor time of what makes the parts of a stage, apart from what writes them."""
+    """Processor time of tracing and processing, apart from what reads and writes files."""
 
     def __init__(self) -> None:
         self.seconds = 0.0
+        read = Stored.part
+
+        def timed_read(*arguments: Any, **keywords: Any) -> Any:
+            begin = time.process_time()
+            part = read(*arguments, **keywords)
+            self.seconds -= time.process_time() - begin
+            return part
+
+        Stored.part = timed_read  # type: ignore[method-assign]
 
     def timed(self, stream: Stream) -> Stream:
-        """Give the same stage, adding up what its parts take."""
+        """Give the same stage, adding up what its parts take but for what they read."""
 
         def parts() -> Iterator[Part]:
             left = iter(stream.parts)
@@ -77,7 +87,7 @@ def measure(cores: int, gaps: int, folder: Path) -> list[str]:
         cpu, made = time.process_time() - cpu, making.seconds - made
         told.append(
             f"  {name:12} {time.monotonic() - before:7.1f} s, processor {cpu:7.1f} s, of which "
-            f"making {100 * made / cpu:3.0f} %, file "
+            f"tracing and processing {100 * made / cpu:3.0f} %, file "
             f"{(folder / f'{name}.nc').stat().st_size / 1e6:7.0f} MB"
         )
 
@@ -91,8 +101,8 @@ def measure(cores: int, gaps: int, folder: Path) -> list[str]:
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     return [
         f"{count} combinations, {points} points: {time.monotonic() - begin_all:.0f} s, processor "
-        f"{cpu:.0f} s = {1e3 * cpu / points:.2f} ms a point, making "
-        f"{100 * making.seconds / cpu:.0f} %, largest memory {memory:.0f} MiB",
+        f"{cpu:.0f} s = {1e3 * cpu / points:.2f} ms a point, tracing "
+        f"and processing {100 * making.seconds / cpu:.0f} %, largest memory {memory:.0f} MiB",
         *told,
     ]
 

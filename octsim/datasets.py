@@ -8,6 +8,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+import netCDF4
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
@@ -19,6 +20,8 @@ from octsim.meanings import meaning
 from octsim.provenance import source_digest
 from octsim.reading import keys_behind, parts_of
 
+CHUNK_CACHE = 1_000_000
+"""Bytes that are held of each variable that is read or written in chunks."""
 _COMPRESSION = {"zlib": True, "complevel": 4, "shuffle": True}
 
 
@@ -119,12 +122,16 @@ def opened(path: str | Path, stage: str, config: Config | None = None) -> Iterat
     Parameters and what is raised are those of `read`.
     """
     path = Path(path)
+    usual = netCDF4.get_chunk_cache()
+    netCDF4.set_chunk_cache(CHUNK_CACHE)  # or each variable would keep 64 MB of what was read
     try:
         dataset = xr.open_dataset(path, engine="netcdf4", cache=False)
     except FileNotFoundError:
         raise DatasetError(f"{path}: not there; run the stage {stage} first") from None
     except (OSError, RuntimeError, ValueError) as error:
         raise _unreadable(path, error) from None
+    finally:
+        netCDF4.set_chunk_cache(*usual)
     with dataset:
         _check(dataset, path, stage, config)
         yield dataset

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.datasets import attributes
+from octsim.datasets import CHUNK_CACHE, attributes
 from octsim.files import whole
 from octsim.layout import Layout, filling
 from octsim.parts import Stream, pour
@@ -56,6 +56,8 @@ class _File:
             fill_value=False if dtype.kind in "fi" else None,
         )  # fmt: skip
         variable.set_auto_maskandscale(False)
+        if ragged:
+            variable.set_var_chunk_cache(size=CHUNK_CACHE)  # or it would hold 64 MB of what is done
         beside = [n for n, c in self._coordinates.items() if _is_beside(n, c, dimensions)]
         if beside and name not in self._coordinates:
             attributes = dict(attributes) | {"coordinates": " ".join(beside)}

@@ -1,5 +1,6 @@
 """Independent points on several threads, in order; compiled code lets go of the interpreter."""
 
+import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -9,7 +10,8 @@ from typing import TypeVar
 Point = TypeVar("Point")
 Result = TypeVar("Result")
 Block = TypeVar("Block")
-_TOGETHER = 8  # points that one thread takes at a time
+_LONG = 5e-3  # s; points that take less are handed out several at a time
+_MOST = 64
 
 
 def each(
@@ -21,16 +23,21 @@ def each(
     of its own too: an interrupt (Ctrl-C) then reaches this one, which waits, and drops the points
     that have not begun.
     """
-    left = iter(points)
+    left, size = iter(points), 1
 
     def together(some: list[Point]) -> list[Result]:
-        return [work(point) for point in some]
+        nonlocal size
+        begin = time.monotonic()
+        found = [work(point) for point in some]
+        alone = max((time.monotonic() - begin) / len(some), _LONG / _MOST)
+        size = max(1, int(_LONG / alone))
+        return found
 
     pool = ThreadPoolExecutor(threads)
     waiting: deque[Future[list[Result]]] = deque()
     try:
         while True:
-            while len(waiting) < 2 * threads + 1 and (some := list(islice(left, _TOGETHER))):
+            while len(waiting) < 2 * threads + 1 and (some := list(islice(left, size))):
                 waiting.append(pool.submit(together, some))
             if not waiting:
                 return
