@@ -196,7 +196,7 @@ says just this, slope(follows) = slope(held) + {law} ∂φ/∂focus, and the col
 mrad/nm.
 
 - **Phase**: by default a sinusoid of the held frequency 2nd, its offset and amplitude linear in k,
-  is fitted by least squares, with the weights of shot noise; `calibration.estimator` names another
+  is fitted by least squares; `calibration.estimator` names another
   ([estimators.md](estimators.md)), with its options in `processing`. The thesis's Fourier transform
   (`calibration: {{estimator: fft}}`, here beside it) is {fft_rms} mrad/nm rms away from that, at
   most {fft_max} ({fft_percent} %). A calibration serves the estimator that it was made with, and no

@@ -176,7 +176,7 @@ diameter, unless `processing.depth` is `peak` or a length. In this table, and in
 
 Those without a phase give predicted_phase_slope · ∂d̂/∂d. `c` is `processing.centre`: the midpoint,
 the mean, the mean weighted by the window, or a polynomial fitted with these weights. Weights of
-`sinusoid` are those of shot noise, 1/(fitted intensity + read noise²), or equal.
+`sinusoid` are equal, or those of shot noise, 1/(fitted intensity + read noise²).
 `sinusoid: {{envelope: common}}` takes the polynomials of a series' mean for all of it: for phases
 over time at one diameter.
 

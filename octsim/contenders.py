@@ -19,7 +19,8 @@ LIKELIHOOD = "maximum_likelihood"
 COMMON = "sinusoid_common_envelope"
 """For a series at one diameter only, so not of a sweep."""
 THESIS = "fft"
-_PLAIN = {"offset_degree": 0, "amplitude_degree": 0, "weights": "equal"}
+_SHOT = {"weights": "shot"}
+_PLAIN = {"offset_degree": 0, "amplitude_degree": 0}
 
 CONTENDERS: Mapping[str, Mapping[str, Any]] = {
     THESIS: {},
@@ -31,10 +32,10 @@ CONTENDERS: Mapping[str, Mapping[str, Any]] = {
     "fringe": {"estimator": "fringe"},
     "esprit": {"estimator": "esprit"},
     "sinusoid_plain": {"estimator": "sinusoid", "sinusoid": _PLAIN},
-    "sinusoid_equal_weights": {"estimator": "sinusoid", "sinusoid": {"weights": "equal"}},
-    "sinusoid": {"estimator": "sinusoid"},
-    "sinusoid_fitted_depth": {"estimator": "sinusoid", "sinusoid": {"depth": "fitted"}},
-    COMMON: {"estimator": "sinusoid", "sinusoid": {"envelope": "common"}},
+    "sinusoid_equal_weights": {"estimator": "sinusoid"},
+    "sinusoid": {"estimator": "sinusoid", "sinusoid": _SHOT},
+    "sinusoid_fitted_depth": {"estimator": "sinusoid", "sinusoid": {"depth": "fitted"} | _SHOT},
+    COMMON: {"estimator": "sinusoid", "sinusoid": {"envelope": "common"} | _SHOT},
     LIKELIHOOD: {"estimator": "maximum_likelihood"},
 }
 """Name of each, and how its processing differs from the thesis's."""

@@ -17,7 +17,7 @@ from octsim.plates import predicted_phase_slope
 from octsim.processing import Processing
 
 BEST = Processing.model_validate(
-    {"estimator": "sinusoid", "depth": "peak", "sinusoid": {"depth": "fitted"}}
+    {"estimator": "sinusoid", "depth": "peak", "sinusoid": {"depth": "fitted", "weights": "shot"}}
 )
 """What measured spectra are processed by, unless something else is asked for."""
 

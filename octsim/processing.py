@@ -55,8 +55,8 @@ class Sinusoid(Section):
     depth: Literal["held", "fitted"] = key(
         "held", "held at processing.depth, or fitted from there by variable projection"
     )
-    weights: Literal["shot", "equal"] = key(
-        "shot", "of a sample: one over its fitted intensity (and read noise), or the same for all"
+    weights: Literal["equal", "shot"] = key(
+        "equal", "of a sample: the same for all, or one over its fitted intensity (and read noise)"
     )
     envelope: Literal["each", "common"] = key(
         "each", "polynomials of each spectrum, or of the mean of a series at one diameter"

@@ -172,7 +172,7 @@ EDITS: dict[str, tuple[Any, set[str], set[str]]] = {
     "processing.sinusoid.offset_degree": (2, PROCESSED, PROCESSED),
     "processing.sinusoid.amplitude_degree": (2, PROCESSED, PROCESSED),
     "processing.sinusoid.depth": ("fitted", PROCESSED, PROCESSED),
-    "processing.sinusoid.weights": ("equal", PROCESSED, PROCESSED),
+    "processing.sinusoid.weights": ("shot", PROCESSED, PROCESSED),
     "processing.sinusoid.envelope": ("common", PROCESSED, PROCESSED),
     "processing.hilbert.band": (0.4, PROCESSED, PROCESSED),
     "processing.esprit.poles": (5, PROCESSED, PROCESSED),

@@ -139,8 +139,12 @@ def _held(
     """Fit at held depths: complex amplitudes, whose slope makes up for a depth that is off."""
     columns = _columns(_waves(wavenumber, depth, envelope), envelope)
     found = _solve(columns, intensity, np.ones_like(intensity))
+    root = np.ones_like(intensity)
     for _ in range(ROUNDS):
-        found = _solve(columns, intensity, weigh(_sum(columns, found), intensity, variance))
+        last, root = root, weigh(_sum(columns, found), intensity, variance)
+        if np.array_equal(root, last):
+            break
+        found = _solve(columns, intensity, root)
     offsets, cosines = envelope.offset.shape[1], envelope.amplitude.shape[1]
     cos, sin = found[:, offsets : offsets + cosines], found[:, offsets + cosines :]
     return cos - 1j * sin, found[:, :offsets], depth
