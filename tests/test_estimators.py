@@ -199,7 +199,7 @@ def test_the_sinusoid_reaches_the_bound_of_what_it_does_not_know() -> None:
     counts = np.random.default_rng(7).poisson(
         np.broadcast_to(offset + amplitude * np.cos(angle), (1500, K.size))
     ).astype(float)  # fmt: skip
-    phase = estimate(counts, K, np.full(1500, 2.1), sinusoid()).phase
+    phase = estimate(counts, K, np.full(1500, 2.1), sinusoid(weights="shot")).phase
     cos, sin = np.cos(angle), np.sin(angle)
     nuisances = np.stack([np.ones_like(X), X, cos, X * cos, X * sin])
     bound = phase_bound(offset, amplitude, angle, nuisances)

@@ -282,11 +282,10 @@ def test_the_stated_error_covers_the_truth_as_often_as_one_sigma_should(
         assert 0.60 <= float(fired[name].mean()) <= 0.76, name
     assert abs(float(fired["trip_bias"].mean())) < 0.01
     assert (np.abs(fired["trip_bias"]) < 0.01).all()
-    # and the trace is as far off as it says, where the thesis's way is not
-    off = fired["expansion"] - fired["true_expansion"]
+    # and so does the trace, where the thesis's way does not
+    off = np.abs(fired["expansion"] - fired["true_expansion"])
     stated = np.hypot(fired["statistical_error"], fired["systematic_error"])
-    # which is known from its samples at rest, and those from each other, to a tenth
-    assert float(off.std()) == pytest.approx(float(stated.mean()), rel=0.25)
+    assert 0.60 <= float((off <= stated).mean()) <= 0.76
     middle = slice(95, 106)
     of_fft = (fired["fft_expansion"] - fired["true_expansion"])[middle].mean()
     ours = (fired["expansion"] - fired["true_expansion"])[middle].mean()
