@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from calibrated import calibration_page
+from calibration_page import calibration_page
 from estimators_page import estimators_page
 from markdown import table
 from pydantic import BaseModel
-from spike import spike
+from spike_page import spike_page
 
 import octsim
 from octsim.config import Config
@@ -368,7 +368,7 @@ if __name__ == "__main__":
     (DOCS / "stability.md").write_text(stability(), encoding="utf-8")
     (DOCS / "tradeoff.md").write_text(tradeoff(), encoding="utf-8")
     pages = {
-        "spike": lambda: spike(xr.load_dataset(RESULTS / "causes.nc")),
+        "spike": lambda: spike_page(xr.load_dataset(RESULTS / "causes.nc")),
         "estimators": lambda: estimators_page(xr.load_dataset(RESULTS / "estimators.nc")),
         "calibration": lambda: calibration_page(RESULTS),
     }

@@ -18,7 +18,7 @@ from octsim.plates import predicted_phase_slope
 from octsim.processing import Processing
 from octsim.settings import by_accuracy, by_rays
 from octsim.sides import side_slopes
-from octsim.simulation import summer, tracer
+from octsim.simulation import Spectrometer, spectrometer, tracer
 from octsim.sweep import focus_line
 from octsim.threads import each
 
@@ -28,27 +28,13 @@ RAYS = 3000
 """The thesis's rays, whose slope over such steps is stored beside, to compare."""
 _CURVATURE_STEP = 4e-3
 
-Spectrum = tuple[Array, float, int]
-Instrument = Callable[[float, float], Spectrum]
-
 
 class Look(NamedTuple):
     """A spectrum to be made: an instrument, a diameter and a focus, µm."""
 
-    instrument: Instrument
+    instrument: Spectrometer
     diameter: float
     focus: float
-
-
-def instrument(config: Config) -> Instrument:
-    """Make the function of diameter and focus, µm, that gives spectrum (K,), error and status."""
-    trace_at, sum_light = tracer(config), summer(config)
-
-    def at(diameter: float, focus: float) -> Spectrum:
-        light = trace_at(diameter, focus)
-        return *sum_light(light), light.status
-
-    return at
 
 
 def converged(config: Config) -> Config:
@@ -109,10 +95,10 @@ class _Bench(NamedTuple):
     """The instrument as it is, and as it is when each parameter is moved."""
 
     trace_at: Callable[[float, float], Light]
-    own: Instrument
-    rays: Instrument
+    own: Spectrometer
+    rays: Spectrometer
     offsets: dict[str, Array]
-    moved: dict[str, list[tuple[Instrument, float, float]]]
+    moved: dict[str, list[tuple[Spectrometer, float, float]]]
 
 
 def _bench(exact: Config, law_slope: float) -> _Bench:
@@ -123,11 +109,11 @@ def _bench(exact: Config, law_slope: float) -> _Bench:
     }
     return _Bench(
         tracer(exact),
-        instrument(exact),
-        instrument(by_rays(exact, RAYS)),
+        spectrometer(exact),
+        spectrometer(by_rays(exact, RAYS)),
         offsets,
         {
-            name: [(instrument(place.config), place.diameter, place.focus) for place in listed]
+            name: [(spectrometer(place.config), place.diameter, place.focus) for place in listed]
             for name, listed in places.items()
         },
     )

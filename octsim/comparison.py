@@ -18,7 +18,7 @@ from octsim.phase import trend
 from octsim.processing import Processing
 from octsim.resolution import RATIOS, RUNS, Point, Resolution, point_of, resolution
 from octsim.settings import by_accuracy, by_rays
-from octsim.simulation import summer, tracer
+from octsim.simulation import spectrometer, tracer
 from octsim.sweep import sweep_foci
 from octsim.threads import each
 from octsim.truth import path_slopes
@@ -120,9 +120,9 @@ def _true_slopes(config: Config, diameter: Array, foci: Array, threads: int) -> 
 def _counted(config: Config, diameter: Array, foci: Array, threads: int) -> Array:
     """Trace the sweep by counted rays, as many as the run's, to spectra (D, K)."""
     counted = by_rays(config, config.tracing.rays)
-    trace_at, sum_light = tracer(counted), summer(counted)
+    look = spectrometer(counted)
     points = zip(diameter.tolist(), foci.tolist(), strict=True)
-    return np.stack(list(each(lambda point: sum_light(trace_at(*point))[0], points, threads)))
+    return np.stack(list(each(lambda point: look(*point)[0], points, threads)))
 
 
 def _slopes(

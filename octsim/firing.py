@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from octsim.band import wavenumbers
-from octsim.calibrate import by_fft, calibrating, converged, instrument
+from octsim.calibrate import by_fft, calibrating, converged
 from octsim.config import Config
 from octsim.datasets import make
 from octsim.differences import Array
@@ -16,6 +16,7 @@ from octsim.noise import shot_noise
 from octsim.plates import predicted_phase_slope
 from octsim.round_trip import round_trips, trip_diameters
 from octsim.series import Series, change_from_rest
+from octsim.simulation import spectrometer
 from octsim.sweep import focus_line
 from octsim.threads import each
 
@@ -60,7 +61,7 @@ def action_potential(
     growth = swelling(time, settings.expansion)
     line = focus_line(config, law)
     focus = line.slope * settings.diameter + line.intercept
-    look = instrument(converged(config))
+    look = spectrometer(converged(config))
     grown = (settings.diameter + growth).tolist()
     spectra = np.stack(list(each(lambda diameter: look(diameter, focus)[0], grown, threads)))
     counted = shot_noise(spectra, settings.photons, np.random.default_rng(settings.seed))

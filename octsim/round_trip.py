@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from octsim.band import wavenumbers
-from octsim.calibrate import Instrument, calibrating, converged, instrument
+from octsim.calibrate import calibrating, converged
 from octsim.config import Config
 from octsim.differences import Array
 from octsim.estimators.series import series_phases
@@ -14,6 +14,7 @@ from octsim.nanometres import Expansion, expansion
 from octsim.noise import shot_noise
 from octsim.parameters import Place, drawn
 from octsim.series import Series, change_from_rest
+from octsim.simulation import Spectrometer, spectrometer
 from octsim.sweep import focus_line
 from octsim.threads import each
 
@@ -66,7 +67,7 @@ def _recover(
     return Expansion(*(part[0] for part in found))
 
 
-def _pair(make: Instrument, place: Place, diameter: float, focus: float, grown: float) -> Array:
+def _pair(make: Spectrometer, place: Place, diameter: float, focus: float, grown: float) -> Array:
     at = diameter + place.diameter
     return np.stack([make(at + by, focus + place.focus)[0] for by in (0.0, grown)])
 
@@ -87,7 +88,7 @@ def round_trips(
     line = focus_line(config, law)
     foci = line.at(diameters)
     believed = [
-        _pair(instrument(exact), Place(exact, 0.0, 0.0), diameter, focus, grown)
+        _pair(spectrometer(exact), Place(exact, 0.0, 0.0), diameter, focus, grown)
         for diameter, focus in zip(diameters.tolist(), foci.tolist(), strict=True)
     ]
     seeds = np.random.SeedSequence(config.action_potential.seed).spawn(diameters.size * TRIALS)
@@ -97,7 +98,7 @@ def round_trips(
         at = number // TRIALS
         diameter, focus = float(diameters[at]), float(foci[at])
         place = drawn(exact, generator, line.slope)
-        other = _pair(instrument(place.config), place, diameter, focus, grown)
+        other = _pair(spectrometer(place.config), place, diameter, focus, grown)
         return [
             _recover(config, calibration, believed[at], diameter, generator)._replace(
                 systematic_error=np.zeros(())

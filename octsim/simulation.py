@@ -40,6 +40,21 @@ def summer(config: Config) -> Callable[[Light], tuple[NDArray[np.float64], float
     )
 
 
+Spectrometer = Callable[[float, float], tuple[NDArray[np.float64], float, AccuracyStatus]]
+"""Gives spectrum (K,), its error and status of a diameter and a focus, µm."""
+
+
+def spectrometer(config: Config) -> Spectrometer:
+    """Make the function of diameter and focus (µm) that traces and sums a config's spectrum."""
+    trace_at, sum_light = tracer(config), summer(config)
+
+    def at(diameter: float, focus: float) -> tuple[NDArray[np.float64], float, AccuracyStatus]:
+        light = trace_at(diameter, focus)
+        return *sum_light(light), light.status
+
+    return at
+
+
 class Brightness(NamedTuple):
     """Intensity of one point, as a mean over the band."""
 

@@ -27,7 +27,7 @@ from octsim.phase import fourier_components
 from octsim.plates import ideal_spectra, predicted_phase_slope
 from octsim.settings import by_rays, changed
 from octsim.sides import SIDES, path_field, side_slopes
-from octsim.simulation import summer, tracer
+from octsim.simulation import spectrometer, summer, tracer
 
 Array = NDArray[np.float64]
 K = wavenumbers(Config().spectrum)
@@ -120,7 +120,7 @@ def asked(**overlay: object) -> Config:
 def test_plates_have_the_slopes_and_sensitivities_of_their_formula(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(calibrate, "instrument", plates)
+    monkeypatch.setattr(calibrate, "spectrometer", plates)
     config = asked(diameters={"num": 8})
     table = calibration(config)
     d, middle = table["diameter"].values, (K[0] + K[-1]) / 2
@@ -144,7 +144,7 @@ def test_plates_have_the_slopes_and_sensitivities_of_their_formula(
 
 
 def test_the_standard_error_is_the_budgets_quadrature(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(calibrate, "instrument", plates)
+    monkeypatch.setattr(calibrate, "spectrometer", plates)
     none = dict.fromkeys(("diameter", "gap", "focus", "detector_radius"), "0 nm")
     none |= {"wavelength_min": "0 nm", "wavelength_max": "0 nm"}
     zero = {"glass": 0.0, "water": 0.0, "numerical_aperture": 0.0}
@@ -218,7 +218,7 @@ def test_a_sensitivity_is_what_another_calibration_finds(
     diameter, focus, step = float(one["diameter"]), float(one["focus"]), 1e-3
     slopes = []
     for by in (-change, change):
-        look = calibrate.instrument(moved(calibrate.converged(Config()), {name: by}, 0.0).config)
+        look = spectrometer(moved(calibrate.converged(Config()), {name: by}, 0.0).config)
         spectra = np.stack([look(diameter + side, focus)[0] for side in (-step, step)])
         before, after = series_phases(spectra, K, N * diameter, FITTED)
         slopes.append(wrapped(after - before) / (2 * step))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import octsim
 from octsim import calibrate, round_trip
 from octsim.band import wavenumbers
-from octsim.calibrate import converged, instrument
+from octsim.calibrate import converged
 from octsim.config import Config
 from octsim.differences import wrapped
 from octsim.errors import ConfigError, DatasetError, OctsimError
@@ -26,6 +26,7 @@ from octsim.nanometres import LARGEST, expansion, sensitivity_at, series_expansi
 from octsim.nanometres import summary as expansion_summary
 from octsim.noise import shot_noise
 from octsim.series import Series, change_from_rest, read_series
+from octsim.simulation import spectrometer
 
 Array = NDArray[np.float64]
 ROOT = Path(__file__).parent.parent
@@ -228,7 +229,7 @@ def test_the_phase_of_a_thicker_neuron_gives_its_thickness(
 ) -> None:
     config = load_config(LAW)
     focus, k = 0.58 * 1.4 + 0.066, wavenumbers(config.spectrum)
-    see = instrument(converged(config))
+    see = spectrometer(converged(config))
     spectra = np.stack([see(1.4 + by / 1e3, focus)[0] for by in (0.0, change)])
     rest, moved = series_phases(
         spectra, k, 1.4 * config.scene.refractive_index.neuron, calibrate.calibrating(config)

@@ -23,7 +23,7 @@ def number(value: float | xr.DataArray, form: str) -> str:
     return (text if float(text) else text.lstrip("+-")).replace("-", "−")
 
 
-def spike(found: xr.Dataset) -> str:
+def spike_page(found: xr.Dataset) -> str:
     """Write the page."""
     values = _spike(found) | _causes(found) | _point(found)
     # paragraphs filled again, as numbers are shorter than their names
