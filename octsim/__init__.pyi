@@ -1,4 +1,5 @@
 from .config import Config as Config
+from .errors import CacheError as CacheError
 from .errors import ConfigError as ConfigError
 from .errors import DatasetError as DatasetError
 from .errors import FileError as FileError
@@ -6,6 +7,7 @@ from .errors import OctsimError as OctsimError
 from .errors import OctsimWarning as OctsimWarning
 from .focus import focus_scan as focus_scan
 from .focus import focus_sweep as focus_sweep
+from .grid import combinations as combinations
 from .law import focus_law as focus_law
 from .law import gaussian_fits as gaussian_fits
 from .loading import load_config as load_config

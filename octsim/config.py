@@ -305,7 +305,7 @@ class Config(Section):
     focus_law: FocusLawConfig = FocusLawConfig()
     sweep: Sweep = Sweep()
     processing: Processing = Processing()
-    grid: Grid = Grid()
+    grid: Annotated[Grid, BeforeValidator(lambda given: {} if given is None else given)] = Grid()
     cache: Cache = Cache()
     budget: Budget = Budget()
 
