@@ -30,7 +30,6 @@ try:
     estimate = expected(run)
     if estimate.is_large:
         print(f"octsim: {estimate}", file=sys.stderr)
-    check_budget(run, estimate, Path(f"results/{run.run}"))
 except OctsimError as error:
     sys.exit(f"octsim: {error}")
 if run.run == Config().run and run != Config():
@@ -79,6 +78,12 @@ def of_stage(stage: str) -> dict[str, object]:
 
 
 onstart:
+    # what is to be made, which may be less than all, may take more than was confirmed
+    stages = {job.rule.name for job in workflow.persistence.dag.needrun_jobs()}
+    try:
+        check_budget(run, estimate.of(*stages), Path(f"results/{run.run}"))
+    except OctsimError as error:
+        sys.exit(f"octsim: {error}")
     # one run of a name at a time; the lock goes with the process, however that ends
     try:
         LOCK.acquire(blocking=False)
@@ -87,9 +92,11 @@ onstart:
 
 
 onsuccess:
-    found = Path(f"results/{run.run}/logs/phase_slope.log")
-    if found.is_file():  # a run may have been asked for less
-        print(found.read_text(), end="", file=sys.stderr)
+    for stage in ("spectra", "phase_slope"):
+        found = Path(f"results/{run.run}/logs/{stage}.log")
+        lines = found.read_text().splitlines() if found.is_file() else []  # asked for less
+        told = [line for line in lines if line.startswith(("octsim: ", "phase slope", "mean "))]
+        print(*told, sep="\n", end="\n" if told else "", file=sys.stderr)
     print(f"octsim: datasets and figures are in results/{run.run}/", file=sys.stderr)
 
 

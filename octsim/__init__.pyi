@@ -1,5 +1,6 @@
 from .calibrate import calibration as calibration
 from .config import Config as Config
+from .errors import CacheError as CacheError
 from .errors import ConfigError as ConfigError
 from .errors import DatasetError as DatasetError
 from .errors import FileError as FileError
@@ -9,6 +10,7 @@ from .estimation import phase_of as phase_of
 from .firing import action_potential as action_potential
 from .focus import focus_scan as focus_scan
 from .focus import focus_sweep as focus_sweep
+from .grid import combinations as combinations
 from .law import focus_law as focus_law
 from .law import gaussian_fits as gaussian_fits
 from .loading import load_config as load_config

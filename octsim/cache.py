@@ -34,6 +34,7 @@ from octsim.cachetables import (
 from octsim.errors import CacheError
 from octsim.files import reason
 
+_LOGGER = logging.getLogger(__name__)
 _MOST_MARKS = 10_000  # that wait in memory
 
 
@@ -190,7 +191,7 @@ class PointCache:
             self._warn(f"can't be read ({reason(error)}); going on without it")
 
     def _warn(self, text: str) -> None:
-        logging.warning("octsim: warning: %s: %s", self.file, text)
+        _LOGGER.warning("octsim: warning: %s: %s", self.file, text)
 
     def _let_go(self) -> None:
         if self._connection is not None:

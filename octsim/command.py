@@ -51,7 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     chosen = _parser().parse_args(arguments)
     do: Callable[[Path], str] = chosen.do
     try:
-        print(do(chosen.file))
+        print(do(chosen.file.expanduser()))
     except OctsimError as error:
         print(f"octsim: {error}", file=sys.stderr)
         return 1

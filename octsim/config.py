@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ConfigDict, Discriminator, Field, Tag
+from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
 from octsim.calibration_config import ActionPotential, Calibration, ExpansionConfig
 from octsim.processing import Processing as Processing
@@ -237,7 +237,7 @@ class Config(Section):
     calibration: Calibration = Calibration()
     expansion: ExpansionConfig = ExpansionConfig()
     action_potential: ActionPotential = ActionPotential()
-    grid: Grid = Grid()
+    grid: Annotated[Grid, BeforeValidator(lambda given: {} if given is None else given)] = Grid()
     cache: Cache = Cache()
     budget: Budget = Budget()
 

@@ -1,7 +1,7 @@
 """Datasets: what each variable means, where a dataset came from, and files that appear whole."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from enum import IntEnum
 from importlib.metadata import version
@@ -91,7 +91,9 @@ def write(dataset: xr.Dataset, path: str | Path) -> None:
         dataset.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
 
 
-def read(path: str | Path, stage: str, config: Config | None = None) -> xr.Dataset:
+def read(
+    path: str | Path, stage: str, config: Config | None = None, without: Iterable[str] = ()
+) -> xr.Dataset:
     """Read a dataset of a stage into memory.
 
     Parameters
@@ -102,6 +104,8 @@ def read(path: str | Path, stage: str, config: Config | None = None) -> xr.Datas
         Stage that it has to be of.
     config : Config, optional
         Config that it has to follow from, as far as its stage depends on one.
+    without : iterable of str
+        Variables that are not read.
 
     Raises
     ------
@@ -110,7 +114,7 @@ def read(path: str | Path, stage: str, config: Config | None = None) -> xr.Datas
     """
     with opened(path, stage, config) as dataset:
         try:
-            return dataset.load()
+            return dataset.drop_vars(list(without), errors="ignore").load()
         except (OSError, RuntimeError, ValueError) as error:
             raise _unreadable(Path(path), error) from None
 

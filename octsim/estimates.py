@@ -17,6 +17,8 @@ _RAY_BYTES = 32  # of the four numbers that are kept of a detected ray
 _PATHS = {"vogel": 40, "paths": 12}  # that a sweep has, about
 _SUMMING = 1e-7  # s a sample, of summing, transforming and differentiating a spectrum
 _JOB_BYTES = 3e8  # of a process with its libraries, compiled code and blocks
+_RAY_MEMORY = 600.0  # bytes, of each ray of a spiral that two threads trace
+_SAMPLE_MEMORY = 1000.0  # bytes, of each sample of the spectra in a block
 _ENOUGH = 50  # points, to know what one takes
 _SHORT = 60.0  # s; of what takes less nothing needs to be said
 
@@ -50,30 +52,55 @@ def rate_name(config: Config) -> str:
     return f"{tracing.scheme} {tracing.accuracy if paths else tracing.rays}"
 
 
+class Cost(NamedTuple):
+    """What a stage takes at most, before anything is found in the cache."""
+
+    points: int = 0
+    """Points to trace."""
+    cpu_seconds: float = 0.0
+    """Processor time."""
+    disk_bytes: float = 0.0
+    """Of its datasets."""
+    memory_bytes: float = _JOB_BYTES
+    """Of its process."""
+
+    def and_also(self, other: "Cost") -> "Cost":
+        """Give what two take, one after the other."""
+        return Cost(
+            self.points + other.points,
+            self.cpu_seconds + other.cpu_seconds,
+            self.disk_bytes + other.disk_bytes,
+            max(self.memory_bytes, other.memory_bytes),
+        )
+
+
 class Estimate(NamedTuple):
-    """What a run takes at most, before anything is found in the cache."""
+    """What a run takes."""
 
     combinations: int
     """Of the grid; 1 without."""
-    points: Mapping[str, int]
-    """Points to trace, by stage."""
-    cpu_seconds: float
-    """Processor time."""
-    disk_bytes: float
-    """Of the datasets."""
+    stages: Mapping[str, Cost]
+    """By stage: those that trace, and those that take processor time or disk."""
+
+    def of(self, *stages: str) -> Cost:
+        """Give what some stages take together."""
+        return functools.reduce(
+            Cost.and_also, (self.stages[s] for s in stages if s in self.stages), Cost()
+        )
 
     @property
     def is_large(self) -> bool:
         """Whether a user would want to know before it begins."""
-        return self.combinations > 1 or self.cpu_seconds > _SHORT
+        return self.combinations > 1 or self.of(*self.stages).cpu_seconds > _SHORT
 
     def __str__(self) -> str:
-        told = ", ".join(f"{stage} {count}" for stage, count in self.points.items())
+        whole = self.of(*self.stages)
+        told = ", ".join(f"{name} {one.points}" for name, one in self.stages.items() if one.points)
         return (
-            f"{self.combinations} combinations, {sum(self.points.values())} points to trace "
-            f"({told}; those in the cache take no time); about {_time(self.cpu_seconds)} of "
-            f"processor time, {self.disk_bytes / 1e9:.2g} GB of disk, {_JOB_BYTES / 1e9:.1g} GB of "
-            "memory a job"
+            f"{self.combinations} combinations, at most {whole.points} points to trace ({told}; "
+            f"those in the cache are not traced); about {_time(whole.cpu_seconds)} of processor "
+            f"time, {whole.disk_bytes / 1e9:.2g} GB of disk, {whole.memory_bytes / 1e9:.1g} GB of "
+            "memory a job; compiling, once, comes on top"
         )
 
 
@@ -88,37 +115,55 @@ def estimate(config: Config, measured: Callable[[str], PointCost | None]) -> Est
         Gives the measured cost of a point of a `rate_name`, where there is one; else
         `point_cost` is taken.
     """
-    points = dict.fromkeys(("focus_scan", "focus_sweep", "detections"), 0)
-    seconds = disk = 0.0
 
-    def cost(of: Config) -> PointCost:
+    def over(stage: str, cost: Callable[[Config], Cost]) -> Cost:
+        every = (cost(at.config) for at in combinations(config, *keys_behind(stage, config)))
+        return functools.reduce(Cost.and_also, every, Cost())
+
+    def rate(of: Config) -> PointCost:
         return measured(rate_name(of)) or point_cost(of)
 
-    def spiral(of: Config) -> Config:
-        tracing = of.tracing.model_copy(update={"scheme": "vogel"})
-        return of.model_copy(update={"tracing": tracing})
+    def traced(of: Config, count: int, *, summed: bool) -> Cost:
+        seconds = rate(of).seconds
+        sums = _SUMMING * of.spectrum.samples if summed else 0.0
+        rays = of.tracing.rays if of.tracing.scheme == "vogel" else 0
+        return Cost(count, count * (seconds + sums), 0.0, _JOB_BYTES + _RAY_MEMORY * rays)
 
-    for at in combinations(config, *keys_behind("focus_scan", config)):
-        count, counted_too = at.config.focus_scan.focus.num, at.config.tracing.scheme != "vogel"
-        points["focus_scan"] += count * (1 + counted_too)
-        summed = _SUMMING * at.config.spectrum.samples
-        extra = cost(spiral(at.config)).seconds if counted_too else 0.0
-        seconds += count * (cost(at.config).seconds + summed + extra)
-    for at in combinations(config, *keys_behind("focus_sweep", config)):
-        count = at.config.focus_law.diameters.num * at.config.focus_law.fraction.num
-        points["focus_sweep"] += count
-        seconds += count * (cost(at.config).seconds + _SUMMING * at.config.spectrum.samples)
-    for at in combinations(config, *keys_behind("detections", config)):
-        count = at.config.sweep.diameters.num
-        points["detections"] += count
-        seconds += count * cost(at.config).seconds
-        disk += count * (cost(at.config).size + 40 * _PATHS[at.config.tracing.scheme])
-    for at in combinations(config, *keys_behind("phase_slope", config)):
-        count, samples = at.config.sweep.diameters.num, at.config.spectrum.samples
-        seconds += 3 * count * _SUMMING * samples
-        disk += 20.0 * count * samples  # intensity, magnitude and phase, slopes of half as many
-    total = math.prod(len(axis.rows) for axis in axes(config))
-    return Estimate(total, points, seconds, disk)
+    def scan(of: Config) -> Cost:
+        count = of.focus_scan.focus.num
+        cost = traced(of, count, summed=True)
+        if of.tracing.scheme == "vogel":
+            return cost
+        tracing = of.tracing.model_copy(update={"scheme": "vogel"})
+        spiral = of.model_copy(update={"tracing": tracing})
+        return cost.and_also(traced(spiral, count, summed=False))
+
+    def sweep(of: Config) -> Cost:
+        count = of.focus_law.diameters.num * of.focus_law.fraction.num
+        return traced(of, count, summed=True)
+
+    def detected(of: Config) -> Cost:
+        count = of.sweep.diameters.num
+        disk = count * (rate(of).size + 40 * _PATHS[of.tracing.scheme])
+        return traced(of, count, summed=False)._replace(disk_bytes=disk)
+
+    def processed(each: float, bytes_each: float) -> Callable[[Config], Cost]:
+        def cost(of: Config) -> Cost:
+            values = of.sweep.diameters.num * of.spectrum.samples
+            memory = _JOB_BYTES + _SAMPLE_MEMORY * of.spectrum.samples
+            return Cost(0, each * values, bytes_each * values, memory)
+
+        return cost
+
+    stages = {
+        "focus_scan": over("focus_scan", scan),
+        "focus_sweep": over("focus_sweep", sweep),
+        "detections": over("detections", detected),
+        "spectra": over("spectra", processed(2 * _SUMMING, 8.0)),
+        # magnitude and phase, and slopes, of half as many components
+        "phase_slope": over("phase_slope", processed(_SUMMING, 12.0)),
+    }
+    return Estimate(math.prod(len(axis.rows) for axis in axes(config)), stages)
 
 
 def expected(config: Config) -> Estimate:
@@ -129,7 +174,7 @@ def expected(config: Config) -> Estimate:
     CacheError
         If the file of the cache is none that can be used.
     """
-    file = Path(config.cache.file)
+    file = Path(config.cache.file).expanduser()
     if not file.exists():
         return estimate(config, lambda _: None)
     with opened(file, config.cache.gigabytes) as cache:
@@ -143,33 +188,45 @@ def expected(config: Config) -> Estimate:
         return estimate(config, functools.cache(measured))
 
 
-def check_budget(config: Config, found: Estimate, folder: Path) -> None:
-    """Refuse a run that takes more than is confirmed, or than there is room for.
+def check_budget(config: Config, cost: Cost, folder: Path) -> None:
+    """Refuse what takes more than is confirmed, or than there is room for.
+
+    Parameters
+    ----------
+    config : Config
+        The run.
+    cost : Cost
+        Of the stages that are to be made.
+    folder : Path
+        Where their datasets go; those that are there will be replaced.
 
     Raises
     ------
     ConfigError
         With the key that confirms it.
     """
-    hours, disk = found.cpu_seconds / 3600, found.disk_bytes / 1e9
-    budget = config.budget
+    hours, disk = cost.cpu_seconds / 3600, cost.disk_bytes / 1e9
+    budget, problems = config.budget, []
     if hours > budget.cpu_hours:
-        raise ConfigError(
+        problems.append(
             f"budget.cpu_hours: {budget.cpu_hours:g} given, but this run takes about {hours:.3g} "
-            f"(by {sum(found.points.values())} points); raise it to confirm, or vary less"
+            f"({cost.points} points); raise it to confirm, vary less, or ask for single datasets"
         )
     if disk > budget.disk_gigabytes:
-        raise ConfigError(
+        problems.append(
             f"budget.disk_gigabytes: {budget.disk_gigabytes:g} given, but this run's datasets take "
             f"about {disk:.3g}; raise it to confirm, or vary less"
         )
     there = next(place for place in (folder, *folder.absolute().parents) if place.exists())
-    free = shutil.disk_usage(there).free / 1e9
+    held = sum(file.stat().st_size for file in folder.glob("*.nc")) / 1e9
+    free = shutil.disk_usage(there).free / 1e9 + held
     if disk > free:
-        raise ConfigError(
+        problems.append(
             f"{folder}: {free:.3g} GB are free, but this run's datasets take about {disk:.3g}; "
             "make room, or vary less"
         )
+    if problems:
+        raise ConfigError("\n".join(problems))
 
 
 def _time(seconds: float) -> str:

@@ -31,18 +31,18 @@ def estimator_of(config: Config, foci: Array) -> EstimatorOf:
 
     Those that know a diameter and no phase give the depth of that diameter, and the phase that the
     thesis's prediction has for it: the slope of that is predicted_phase_slope · ∂d̂/∂d. Of fft,
-    whose phases are its components', all is NaN.
+    whose phases are its components', all is NaN, as it is without a focus.
 
     Parameters
     ----------
     config : Config
         The run, at one combination of its grid.
     foci : ndarray
-        Foci of all of the sweep's diameters, µm.
+        Foci of all of the sweep's diameters, µm; NaN where there is no law.
     """
     processing, k = config.processing, wavenumbers(config.spectrum)
     n_neuron = config.scene.refractive_index.neuron
-    if processing.estimator == "fft":
+    if processing.estimator == "fft" or np.isnan(foci).any():
         return lambda _, diameter: Estimate(*np.full((2, diameter.size), np.nan))
     if processing.estimator != "maximum_likelihood":
         return lambda spectra, diameter: estimate(spectra, k, n_neuron * diameter, processing)

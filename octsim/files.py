@@ -18,6 +18,7 @@ def reason(error: Exception) -> str:
 
 # snakemake's own notes and the copies that it keeps of files being replaced need some room too
 SPACE = 32_000_000
+_FULL = 1_000_000
 
 
 def require_folder(path: Path) -> None:
@@ -57,9 +58,9 @@ def whole(path: Path) -> Iterator[Path]:
         yield temporary
         temporary.replace(path)
     except (OSError, RuntimeError) as error:
-        raise FileError(
-            f"{path}: can't be written ({reason(error)}); what was there is unchanged"
-        ) from None
+        full = shutil.disk_usage(temporary.parent).free < _FULL if path.parent.is_dir() else False
+        why = "the disk is full" if full else reason(error)
+        raise FileError(f"{path}: can't be written ({why}); what was there is unchanged") from None
     finally:
         with contextlib.suppress(OSError):
             temporary.unlink()

@@ -80,7 +80,7 @@ def _scanned(layout: Layout, whence: Points, threads: int) -> Iterator[Part]:
         scanner, diameter = _scanner(at.config, whence), at.config.focus_scan.diameter
         return ((scanner, diameter, z) for z in layout.own[at.position]["focus"][1][span].tolist())
 
-    blocks = list(layout.blocks(points_per_block(*point_cost(layout.config))))
+    blocks = list(layout.blocks(lambda config: points_per_block(*point_cost(config))))
     for (at, span), found in each_block(lambda p: p[0](p[1], p[2]), blocks, points_of, threads):
         light, rays = zip(*found, strict=True)
         variables = {
@@ -88,7 +88,7 @@ def _scanned(layout: Layout, whence: Points, threads: int) -> Iterator[Part]:
             "rays_detected": ("focus", np.array(rays)),
             "diameter": at.config.focus_scan.diameter,
         }
-        yield Part(at, span.start, len(found), variables)
+        yield Part(at, span.start, span.stop - span.start, variables)
 
 
 @Stage
@@ -134,11 +134,14 @@ def _swept(layout: Layout, whence: Points, threads: int) -> Iterator[Part]:
         found: Brightness = measure(light)
         return found
 
-    size, seconds = point_cost(layout.config)
-    fractions = layout.config.focus_law.fraction.num
-    blocks = list(layout.blocks(points_per_block(size * fractions, seconds * fractions)))
+    def most(config: Config) -> int:
+        size, seconds = point_cost(config)
+        fractions = config.focus_law.fraction.num
+        return points_per_block(size * fractions, seconds * fractions)
+
+    blocks = list(layout.blocks(most))
     dimensions = ("diameter", "fraction")
     for (at, span), found in each_block(measured, blocks, points_of, threads):
         heights = foci(at, span)
         variables = _brightness(dimensions, heights.shape, found) | {"focus": (dimensions, heights)}
-        yield Part(at, span.start, len(found), variables)
+        yield Part(at, span.start, span.stop - span.start, variables)

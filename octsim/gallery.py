@@ -21,6 +21,10 @@ GRID = "grid"
 """Figure of the phase slope across the grid."""
 
 
+NOT_DRAWN: Mapping[str, tuple[str, ...]] = {GRID: ("component_phase_slope",)}
+"""Variables of a figure's datasets that it does not need, and that may be large."""
+
+
 def figures_of(config: Config) -> dict[str, tuple[str, ...]]:
     """Give the figures of a run, and the stages that each is drawn from.
 

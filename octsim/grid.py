@@ -1,5 +1,6 @@
 """A config that varies its keys: the axes of the grid, and the config at each combination."""
 
+import re
 from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any, NamedTuple
@@ -8,7 +9,7 @@ import numpy as np
 import yaml
 
 from octsim.checks import plain_remarks
-from octsim.config import Config
+from octsim.config import PRESETS, Config
 from octsim.errors import ConfigError
 from octsim.meanings import MEANINGS
 from octsim.overlays import merge, preset
@@ -16,6 +17,8 @@ from octsim.problems import known_keys
 
 FIXED = ("run", "calibration", "expansion", "action_potential", "grid", "cache", "budget")
 """Sections that a run has once: what no stage over the grid depends on."""
+_PRESET = "tracing.preset"
+_NUMBERS = re.compile(r"[-+]?[0-9][0-9.e+-]*")
 
 
 class Axis(NamedTuple):
@@ -56,6 +59,13 @@ def overlap(one: str, other: str) -> bool:
     return f"{one}.".startswith(f"{other}.") or f"{other}.".startswith(f"{one}.")
 
 
+def bears_on(key: str, *read: str) -> bool:
+    """Tell whether a varied key sets any of some others, or parts of them."""
+    # a preset stands for other keys
+    sets = (key, *(f"tracing.{name}" for name in PRESETS["draft"])) if key == _PRESET else (key,)
+    return any(overlap(one, other) for one in sets for other in read)
+
+
 @cache
 def dimension_name(key: str) -> str:
     """Name the dimension of a dotted key by its last part, or by as many as tell it from others.
@@ -89,7 +99,7 @@ def axes(config: Config, *keys: str) -> tuple[Axis, ...]:
     varied = {
         key: tuple(values)
         for key, values in config.grid.varied.items()
-        if not keys or any(overlap(key, read) for read in keys)
+        if not keys or bears_on(key, *keys)
     }
     if config.grid.combine == "product":
         return tuple(
@@ -128,16 +138,15 @@ def config_at(base: Mapping[str, Any], values: Mapping[str, Any]) -> Config:
 
 def remarks(config: Config) -> list[str]:
     """Say what is possible but likely not meant, a line each, of all combinations together."""
+    if not config.grid.varied:
+        return plain_remarks(config)
     said: dict[str, list[str]] = {}
     total = 0
     for combination in combinations(config):
         total += 1
         for remark in plain_remarks(combination.config):
-            said.setdefault(remark.split(":")[0], []).append(remark)
-    return [
-        lines[0] if total == 1 else f"{lines[0]} (at {len(lines)} of {total} combinations)"
-        for lines in said.values()
-    ]
+            said.setdefault(_NUMBERS.sub("", remark), []).append(remark)
+    return [f"{lines[0]} (at {len(lines)} of {total} combinations)" for lines in said.values()]
 
 
 def without_grid(config: Config, target: str) -> Config:

@@ -1,6 +1,8 @@
 """Values of a grid: written out as lists and checked, each alone and all combinations."""
 
 import itertools
+import math
+from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
@@ -102,7 +104,13 @@ def _listed(key: str, given: Any) -> list[Any]:
         return _spaced(key, given)
     inner = [f"{key}.{name}" for name in given] if isinstance(given, Mapping) else []
     if inner and set(inner) <= known:
-        raise ConfigError(f"grid.{key}: {given!r} given; keys don't nest here: write {inner[0]}: ")
+        raise ConfigError(
+            f"grid.{key}: {given!r} given; keys don't nest here: write grid: {{{inner[0]}: [...]}}"
+        )
+    if isinstance(given, Mapping) and {"start", "stop"} & set(given):
+        raise ConfigError(
+            f"grid.{key}: {dict(given)} given; a range has start, stop and num, and nothing else"
+        )
     raise ConfigError(
         f"grid.{key}: {given!r} given; it should be a list of values, or a range "
         "{start: ..., stop: ..., num: ...}"
@@ -111,6 +119,8 @@ def _listed(key: str, given: Any) -> list[Any]:
 
 def _spaced(key: str, given: Mapping[str, Any]) -> list[Any]:
     ends, num = [given["start"], given["stop"]], given["num"]
+    if any(isinstance(end, bool) for end in ends):
+        raise ConfigError(f"grid.{key}: {dict(given)} given; both ends should be numbers")
     if not isinstance(num, int) or isinstance(num, bool) or not 2 <= num <= MOST:
         raise ConfigError(f"grid.{key}.num: {num!r} given; a range has 2 to {MOST} values")
     lengths = all(isinstance(end, str) and end.strip()[-1:].isalpha() for end in ends)
@@ -121,16 +131,29 @@ def _spaced(key: str, given: Mapping[str, Any]) -> list[Any]:
             f"grid.{key}: {dict(given)} given; both ends should be numbers, or both lengths with "
             "their unit"
         ) from None
-    if not start < stop:
+    if not (math.isfinite(start) and math.isfinite(stop) and start < stop):
         raise ConfigError(
             f"grid.{key}.start: {ends[0]} given; it must be below grid.{key}.stop = {ends[1]}, "
             "or the range is empty"
         )
-    values = np.round(np.linspace(start, stop, num), DECIMALS).tolist()
+    values: list[float] = np.round(np.linspace(start, stop, num), DECIMALS).tolist()
     if lengths:
         return [format_length(value) for value in values]
-    whole = all(isinstance(end, int) for end in ends) and all(map(float.is_integer, values))
-    return [int(value) for value in values] if whole else values
+    if not all(isinstance(end, int) for end in ends):
+        return values
+    if not all(map(float.is_integer, values)) and isinstance(_default(key), int):
+        raise ConfigError(
+            f"grid.{key}: {dict(given)} given; its {num} values are not all whole numbers; choose "
+            "a num that divides the range, or list them"
+        )
+    return [int(value) if value.is_integer() else value for value in values]
+
+
+def _default(key: str) -> Any:
+    value: Any = Config()
+    for name in key.split("."):
+        value = getattr(value, name, None)
+    return value
 
 
 def _check_keys(config: Config, listed: Mapping[str, list[Any]]) -> None:
@@ -141,7 +164,7 @@ def _check_keys(config: Config, listed: Mapping[str, list[Any]]) -> None:
     if _zipped(config) and len(set(counts.values())) > 1:
         told = ", ".join(f"{key} has {count}" for key, count in counts.items())
         raise ConfigError(f"grid: zipped keys need as many values each, but {told}")
-    total = max(counts.values()) if _zipped(config) else int(np.prod(list(counts.values())))
+    total = max(counts.values()) if _zipped(config) else math.prod(counts.values())
     if total > MOST:
         raise ConfigError(f"grid: {total} combinations; at most {MOST} are made in one run")
 
@@ -151,12 +174,8 @@ def _check_rows(config: Config) -> None:
     count = max(len(values) for values in config.grid.varied.values())
     for axis in axes(config):
         texts = [as_text(list(row)) for row in axis.rows]
-        twice = (
-            [text for text in texts if texts.count(text) > 1]
-            if len(set(texts)) < len(texts)
-            else []
-        )
-        if twice:
-            raise ConfigError(f"grid.{axis.keys[0]}: {twice[0]} stands twice; give each value once")
+        twice, times = Counter(texts).most_common(1)[0]
+        if times > 1:
+            raise ConfigError(f"grid.{axis.keys[0]}: {twice} stands twice; give each value once")
         if _zipped(config) and len(texts) < count:
             raise ConfigError("grid: a zipped combination stands twice; give each once")

@@ -1,6 +1,7 @@
 """Keys by content: points whose light is the same to the bit, and no others, share one."""
 
 import json
+import platform
 import struct
 from collections.abc import Mapping
 from functools import cache
@@ -16,7 +17,9 @@ _POINT = struct.Struct("<dd")
 def _machine_code() -> Mapping[str, str]:
     """Say what turns the sources into numbers: its last bits may differ with any of these."""
     libraries = {name: version(name) for name in ("numpy", "numba", "llvmlite")}
-    return {**libraries, "processor": llvmlite.binding.get_host_cpu_name()}
+    processor = llvmlite.binding.get_host_cpu_name()
+    features = llvmlite.binding.get_host_cpu_features().flatten()
+    return {**libraries, "processor": f"{processor} {features}", "libc": str(platform.libc_ver())}
 
 
 def instrument_key(parts: Mapping[str, object], code: str) -> bytes:

@@ -99,12 +99,12 @@ class Layout:
         """Number of points of all combinations."""
         return sum(map(self.count, self.combinations)) if self.swept else len(self.combinations)
 
-    def blocks(self, most: int) -> Iterator[tuple[Combination, slice]]:
-        """Give every combination's points in order, not more than some at once."""
+    def blocks(self, most: Callable[[Config], int]) -> Iterator[tuple[Combination, slice]]:
+        """Give every combination's points in order, not more at once than its config allows."""
         for at in self.combinations:
-            count = self.count(at)
-            for first in range(0, count, most):
-                yield at, slice(first, min(first + most, count))
+            count, together = self.count(at), most(at.config)
+            for first in range(0, count, together):
+                yield at, slice(first, min(first + together, count))
 
     def dimension(self, name: str) -> str:
         """Give the name that a stage's dimension has in the whole dataset."""

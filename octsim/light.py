@@ -21,6 +21,8 @@ class AccuracyStatus(IntEnum):
     AT_AN_EDGE = 4
     """Reached by the estimate, but part of the light misses a cylinder, and what returns from near
     its edge can be missing from both."""
+    NO_FOCUS = 5
+    """Not traced: the focus law, which the focus was to follow, could not be fitted."""
 
 
 class Light(NamedTuple):

@@ -120,14 +120,14 @@ def _by_components(config: Config) -> bool:
     return config.processing.estimator == "fft"
 
 
-def _block_points(layout: Layout) -> int:
-    return points_per_block(40 * layout.config.spectrum.samples)
+def _block_points(config: Config) -> int:
+    return points_per_block(40 * config.spectrum.samples)
 
 
 def _transformed(layout: Layout, stored: Stored) -> Iterator[Part]:
     dimensions = ("diameter", "component")
     estimates = any(not _by_components(at.config) for at in layout.combinations)
-    for at, span in layout.blocks(_block_points(layout)):
+    for at, span in layout.blocks(_block_points):
         part = stored.part(at, span)
         intensity = part["intensity"].values
         components = fourier_components(intensity, at.config.processing)
@@ -170,7 +170,7 @@ def _component_count(config: Config) -> dict[str, int]:
 
 def _differentiated(layout: Layout, stored: Stored) -> Iterator[Part]:
     slopes: dict[str, list[NDArray[np.float64]]] = {"phase_slope": [], "ideal_phase_slope": []}
-    for at, span in layout.blocks(_block_points(layout)):
+    for at, span in layout.blocks(_block_points):
         count = layout.count(at)
         # a central difference looks at both neighbours
         wide = slice(max(span.start - 1, 0), min(span.stop + 1, count))
@@ -234,8 +234,8 @@ def summary(slopes: xr.Dataset) -> str:
     means = slopes["mean_phase_slope"].values
     if means.ndim:
         return (
-            f"mean phase slope over the diameters {means.min():.3f} to {means.max():.3f} mrad/nm "
-            f"over {means.size} combinations"
+            f"mean phase slope over the diameters {np.nanmin(means):.3f} to "
+            f"{np.nanmax(means):.3f} mrad/nm over {means.size} combinations"
         )
     figures = (
         "mean_phase_slope", "phase_slope_standard_deviation", "predicted_phase_slope",

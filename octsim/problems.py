@@ -46,6 +46,13 @@ def explain(error: ErrorDetails) -> str:
     if place[:2] in _OF_TWO_KINDS:
         del place[2:3]  # which of the two it was read as
     path = ".".join(place)
+    listed = isinstance(error["input"], list | tuple) and error["type"] != "model_type"
+    key = next((name for name in (place[-1], path) if name in set(known_keys())), None)
+    if listed and key:
+        return (
+            f"{path}: {error['input']!r} given; several values of one key stand in the grid: "
+            f"write grid: {{{key}: [...]}}"
+        )
     if "." in place[-1] and error["type"] == "extra_forbidden":
         return f"{path}: unknown key; keys nest, so write {place[-1].replace('.', ': {')}: ...}}"
     if error["type"] == "extra_forbidden":

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from octsim.config import Config
-from octsim.grid import Axis, axes, combinations, overlap
+from octsim.grid import Axis, axes, bears_on, combinations
 
 _SPIRAL = ("tracing.rays", "tracing.min_amplitude")
 
@@ -118,7 +118,7 @@ def parts_of(data: Mapping[str, Any], *keys: str) -> dict[str, object]:
     varied = {
         f"grid.{key}": value
         for key, value in grid.items()
-        if key != "combine" and any(overlap(key, read) for read in keys)
+        if key != "combine" and bears_on(key, *keys)
     }
     how = {"grid.combine": grid["combine"]} if varied else {}
     return {key: part_of(data, key) for key in keys} | varied | how

@@ -57,9 +57,11 @@ def _mean_paths(light: Light, row: NDArray[np.int64], paths: int) -> NDArray[np.
 def _strongest_first(layout: Layout, stored: Stored) -> NDArray[np.int64]:
     """Find every path of a sweep, that of the strongest field at the middle of the band first."""
     strength: dict[int, float] = {}
-    for at, span in layout.blocks(_block_points(layout)):
+    for at, span in layout.blocks(_block_points):
         part = stored.part(at, span)
         codes, row = np.unique(part["path_code"].values, return_inverse=True)
+        if codes.size == 0:
+            continue
         k = wavenumbers(at.config.spectrum)
         point = np.repeat(np.arange(part.sizes["diameter"]), part["rays_detected"].values)
         phase = (k[0] + k[-1]) / 2 * part["optical_path_length"].values
@@ -78,8 +80,8 @@ def _strongest_first(layout: Layout, stored: Stored) -> NDArray[np.int64]:
     return np.array(sorted(strength, key=lambda code: (-strength[code], code)), np.int64)
 
 
-def _block_points(layout: Layout) -> int:
-    return points_per_block(point_cost(layout.config)[0] + 1000)
+def _block_points(config: Config) -> int:
+    return points_per_block(point_cost(config).size + 1000)
 
 
 @Stage
@@ -120,7 +122,7 @@ def light_paths(config: Config, detected: xr.Dataset) -> Stream:
 
 def _shared(layout: Layout, stored: Stored, codes: NDArray[np.int64]) -> Iterator[Part]:
     order = np.argsort(codes)
-    for at, span in layout.blocks(_block_points(layout)):
+    for at, span in layout.blocks(_block_points):
         k = wavenumbers(at.config.spectrum)
         step = (k[-1] - k[0]) / (_SAMPLES - 1)
         found = []

@@ -22,6 +22,7 @@ from octsim.simulation import Tracer, summer
 from octsim.stored import Stored
 from octsim.threads import each_block
 
+_ROUGH = 0.1  # of the largest intensity; an error that a slope does not survive
 RAYS: Mapping[str, str] = {
     "path_code": "path",
     "amplitude": "amplitude",
@@ -133,32 +134,44 @@ def detections(
 def _detected(
     layout: Layout, law: xr.Dataset | None, whence: Points, threads: int
 ) -> Iterator[Part]:
-    config = layout.config
-    stored = Stored(law, "focus_law", config) if law is not None else None
-
-    def foci(at: Combination) -> NDArray[np.float64]:
-        given = isinstance(at.config.sweep.focus, FocusLine)
-        try:
-            return sweep_foci(at.config, None if given or stored is None else stored.part(at))
-        except OctsimError as error:
-            raise OctsimError(f"{error} (at {at})" if at.values else str(error)) from None
-
-    # known before the first is traced: a law that is missing anywhere stops the stage here
-    focus = {at.position: foci(at) for at in layout.combinations}
+    focus = _foci(layout, law)
 
     def points_of(block: tuple[Combination, slice]) -> Iterator[tuple[Tracer, float, float]]:
         at, span = block
-        trace_at = whence.tracer(at.config)
+        heights = focus[at.position][span]
+        trace_at = _untraced if np.isnan(heights).all() else whence.tracer(at.config)
         diameters = layout.own[at.position]["diameter"][1][span]
-        pairs = zip(diameters.tolist(), focus[at.position][span].tolist(), strict=True)
-        return ((trace_at, d, z) for d, z in pairs)
+        return ((trace_at, d, z) for d, z in zip(diameters.tolist(), heights.tolist(), strict=True))
 
-    blocks = list(layout.blocks(points_per_block(*point_cost(config))))
+    blocks = list(layout.blocks(lambda config: points_per_block(*point_cost(config))))
     for (at, span), found in each_block(lambda p: p[0](p[1], p[2]), blocks, points_of, threads):
         variables = _light_variables(found, focus[at.position][span])
         if "outcome" in layout.own[at.position]:
             variables["outcomes"] = ("diameter", "outcome"), _outcomes(found)
         yield Part(at, span.start, len(found), variables)
+
+
+def _foci(layout: Layout, law: xr.Dataset | None) -> dict[tuple[int, ...], NDArray[np.float64]]:
+    """Give the foci of each combination; NaN where there is no law, unless there is none at all."""
+    stored = Stored(law, "focus_law", layout.config) if law is not None else None
+    focus: dict[tuple[int, ...], NDArray[np.float64]] = {}
+    failed: list[str] = []
+    for at in layout.combinations:
+        given = isinstance(at.config.sweep.focus, FocusLine)
+        try:
+            found = sweep_foci(at.config, None if given or stored is None else stored.part(at))
+        except OctsimError as error:
+            failed.append(f"{error} (at {at})" if at.values else str(error))
+            found = np.full(layout.count(at), np.nan)
+        focus[at.position] = found
+    if len(failed) == len(layout.combinations):
+        raise OctsimError(failed[0])
+    return focus
+
+
+def _untraced(_diameter: float, _focus: float) -> Light:
+    none = np.empty(0)
+    return Light(none.astype(np.int64), none, none, none, 0.0, 0, AccuracyStatus.NO_FOCUS)
 
 
 def _light_variables(found: list[Light], focus: NDArray[np.float64]) -> dict[str, Any]:
@@ -230,8 +243,10 @@ def _summed(layout: Layout, stored: Stored, threads: int) -> Iterator[Part]:
         sum_light = summer(at.config)
         return ((sum_light, light) for light in stored_light(part))
 
-    size = 8 * layout.config.spectrum.samples + point_cost(layout.config)[0]
-    blocks = list(layout.blocks(points_per_block(size)))
+    def most(config: Config) -> int:
+        return points_per_block(8 * config.spectrum.samples + point_cost(config).size)
+
+    blocks = list(layout.blocks(most))
     for block, found in each_block(lambda p: p[0](p[1]), blocks, points_of, threads):
         (at, span), part = block, parts.pop(id(block))
         spectrum, error = zip(*found, strict=True)
@@ -241,25 +256,43 @@ def _summed(layout: Layout, stored: Stored, threads: int) -> Iterator[Part]:
             late = np.array(error) > at.config.tracing.accuracy
             reached = status == AccuracyStatus.REACHED
             status = np.where(reached & late, AccuracyStatus.NOT_REACHED, status)
+        nothing = np.where(status == AccuracyStatus.NO_FOCUS, np.nan, 0.0)
         variables = {
-            "intensity": (("diameter", "wavenumber"), np.stack(spectrum)),
-            "intensity_error": ("diameter", np.array(error)),
+            "intensity": (("diameter", "wavenumber"), np.stack(spectrum) + nothing[:, None]),
+            "intensity_error": ("diameter", np.array(error) + nothing),
             "accuracy_status": ("diameter", *flags(AccuracyStatus, status)),
             "focus": ("diameter", part["focus"].values),
         }
         yield Part(at, span.start, len(found), variables)
 
 
-def unreached(measured: xr.Dataset) -> str | None:
-    """Say in a line at how many points the accuracy asked for is not reached, if at any."""
-    status = measured["accuracy_status"].values
+def doubts(measured: xr.Dataset) -> list[str]:
+    """Say, a line each, where a run's spectra are not what one would want."""
+    status, error = measured["accuracy_status"].values, measured["intensity_error"].values
+    none = status == AccuracyStatus.NO_FOCUS
     fine = (AccuracyStatus.REACHED, AccuracyStatus.NOT_CONTROLLED, filling(status.dtype))
-    missed = ~np.isin(status, fine)
-    if not missed.any():
-        return None
-    worst = float(measured["intensity_error"].values[missed].max())
-    return (
-        f"the accuracy is not, or not surely, reached at {missed.sum()} of {missed.size} points "
-        f"(accuracy_status says where and why; estimated error up to {worst:.2g}): compare with "
-        "tracing.scheme vogel, or ask for less by tracing.accuracy"
-    )
+    missed = ~np.isin(status, fine) & ~none
+    rough = (status == AccuracyStatus.NOT_CONTROLLED) & (error > _ROUGH)
+    said = []
+    if missed.any():
+        said.append(
+            f"the accuracy is not, or not surely, reached at {missed.sum()} of {missed.size} "
+            f"points (accuracy_status says where and why; estimated error up to "
+            f"{error[missed].max():.2g}): compare with tracing.scheme vogel, or ask for less by "
+            "tracing.accuracy"
+        )
+    if rough.any():
+        said.append(
+            f"the estimated error of the intensity is above {_ROUGH} of its largest at "
+            f"{rough.sum()} of {rough.size} points (intensity_error; up to "
+            f"{error[rough].max():.2g}), so their slopes mean little: raise tracing.rays, or give "
+            "tracing.preset"
+        )
+    if none.any():
+        laws = none.reshape(-1, none.shape[-1]).all(axis=1)
+        said.append(
+            f"there is no focus law at {laws.sum()} of {laws.size} combinations, which are NaN "
+            "(focus_law.nc has the status of each fit): give focus_law.fraction a wider range or "
+            "more steps"
+        )
+    return said

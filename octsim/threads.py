@@ -11,7 +11,7 @@ Point = TypeVar("Point")
 Result = TypeVar("Result")
 Block = TypeVar("Block")
 _LONG = 5e-3  # s; points that take less are handed out several at a time
-_MOST = 64
+_MOST = 16
 
 
 def each(

@@ -27,9 +27,15 @@ def test_the_python_example_runs(capsys: pytest.CaptureFixture[str]) -> None:
     assert unit == "mrad/nm"
 
 
-def test_the_example_configs_are_valid_ones() -> None:
+def test_the_example_configs_are_valid() -> None:
     runs = [load_config(yaml.safe_load(example)).run for example in blocks("yaml")]
     assert runs == ["thick", "sweep"]
+
+
+def test_the_example_of_a_grid_is_the_file_that_the_docs_show() -> None:
+    text = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
+    (shown,) = re.findall(r"```yaml\n(.*?)```", text, flags=re.DOTALL)
+    assert load_config(yaml.safe_load(shown)) == load_config(ROOT / "config" / "gaps.yaml")
 
 
 def test_every_dependency_is_justified() -> None:

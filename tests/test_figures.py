@@ -64,8 +64,8 @@ def test_a_figure_is_the_same_bytes_each_time_and_has_units(
 LABELS = {
     "grid": {
         "Processing window",
-        "Mean phase slope (mrad/nm)",
-        "Scatter over the diameters (mrad/nm)",
+        "Mean slope (mrad/nm)",
+        "Scatter (mrad/nm)",
     },
     "figure_1": {"x (radius of the aperture)", "y (radius of the aperture)"},
     "figure_6": {

@@ -10,13 +10,16 @@ import xarray as xr
 import octsim
 from octsim import layout as layouts
 from octsim.config import Config
-from octsim.errors import ConfigError
+from octsim.errors import ConfigError, OctsimError
 from octsim.grid import axes, combinations, dimension_name, remarks, without_grid
+from octsim.light import AccuracyStatus
 from octsim.loading import load_config
 from octsim.netcdf import write_stream
+from octsim.phase import summary
 from octsim.problems import known_keys
 from octsim.reading import stage_axes
 from octsim.stored import Stored
+from octsim.sweep import doubts
 
 SMALL: dict[str, Any] = {
     "tracing": {"rays": 150},
@@ -110,16 +113,18 @@ def test_every_key_gives_a_dimension_of_its_own() -> None:
     ("grid", "message"),
     [
         ({"detector.core_diametr": ["4 um"]}, "grid.detector.core_diametr: unknown key;"),
-        ({"scene": {"gap": ["5 nm"]}}, "keys don't nest here: write scene.gap"),
+        ({"scene": {"gap": ["5 nm"]}}, "don't nest here: write grid: {scene.gap"),
         ({"combine": "zip", "scene.gap": ["1 nm"], "tracing.rays": [1, 2]}, "scene.gap has 1, tr"),
         ({"scene.gap": []}, r"grid.scene.gap: \[\] given; list one value or more"),
         ({"scene.gap": {"start": "1 nm", "stop": "1 nm", "num": 2}}, "or the range is empty"),
         ({"scene.gap": {"start": "1 nm", "stop": "2 nm", "num": 0}}, "grid.scene.gap.num: 0 given"),
         ({"scene.gap": {"start": "1 nm", "stop": 2, "num": 2}}, "both ends should be numbers, or"),
+        ({"scene.gap": {"start": "1 nm", "stop": "2 nm"}}, "has start, stop and num"),
         ({"scene.gap": [5]}, "grid.scene.gap: 5 given; a length needs its unit"),
         ({"scene.gap": "5 nm"}, "grid.scene.gap: '5 nm' given; it should be a list of values, or"),
         ({"scene.gap": ["5 nm", "0.005 um"]}, "grid.scene.gap: .* stands twice"),
         ({"combine": "zip", "scene.gap": ["1 nm"] * 2, "tracing.rays": [1, 1]}, "stands twice"),
+        ({"tracing.rays": {"start": 100, "stop": 200, "num": 4}}, "are not all whole numbers"),
         ({"tracing.rays": [1.5]}, "grid.tracing.rays: 1.5 given; it should be a whole number"),
         ({"tracing": [{}], "tracing.rays": [1]}, "grid.tracing: given beside grid.tracing.rays"),
         ({"run": ["a", "b"]}, "grid.run: can't be varied"),
@@ -141,6 +146,14 @@ def test_only_combinations_have_to_be_possible() -> None:
     high = {"objective": {"numerical_aperture": 1.6}}
     config = gridded({"scene.refractive_index.glass": [1.7, 1.8]}, high)
     assert len(list(combinations(config))) == 2
+
+
+def test_two_remarks_on_one_key_are_both_said() -> None:
+    coarse = {"sweep": {"diameters": {"start": "1 um", "stop": "9 um", "num": 20}}}
+    for grid in ({}, {"scene.gap": ["1 nm", "2 nm"]}):
+        said = [line for line in remarks(gridded(grid, coarse)) if "sweep.diameters: " in line]
+        assert len(said) == 2
+        assert all(line.endswith("(at 2 of 2 combinations)") for line in said) == bool(grid)
 
 
 def test_remarks_tell_at_how_many_combinations_they_hold() -> None:
@@ -185,6 +198,10 @@ GRIDS: dict[str, dict[str, Any]] = {
     "sizes": {"sweep.diameters.num": [5, 9, 3], "spectrum.samples": [40, 33]},
     "schemes": {"tracing.scheme": ["vogel", "paths"], "focus_scan.focus.num": [5, 4]},
     "estimators": {"processing.estimator": ["fft", "sinusoid", "esprit", "maximum_likelihood"]},
+    "preset": {
+        "combine": "zip", "tracing.preset": ["draft", "draft", "standard"],
+        "scene.gap": ["0 nm", "30 nm", "30 nm"],
+    },
     "focus": {"sweep.focus": ["law", {"slope": 0.58, "intercept": "69 nm"}]},
 }  # fmt: skip
 
@@ -247,6 +264,40 @@ def test_blocks_threads_and_order_change_no_bit(monkeypatch: pytest.MonkeyPatch)
                 one = Stored(whole[stage], stage, configs[0]).part(at, swept=swept)
                 other = Stored(again[stage], stage, config).part(at, swept=swept)
                 assert one.drop_attrs().identical(other.drop_attrs()), stage
+
+
+def test_a_combination_without_a_focus_law_is_nan_and_the_others_are_there() -> None:
+    # the narrow range of foci has no peak within it
+    config = gridded({"focus_law.fraction.stop": [0.8, 0.42]})
+    found = run(config)
+    status = found["spectra"]["accuracy_status"].values
+    assert (status[1] == AccuracyStatus.NO_FOCUS).all()
+    assert (status[0] == AccuracyStatus.NOT_CONTROLLED).all()
+    slopes = found["phase_slope"]["mean_phase_slope"].values
+    assert np.isnan(slopes).tolist() == [False, True]
+    assert found["spectra"]["intensity"].isnull()[1].all()
+    assert found["detections"]["rays_detected"].values[1].sum() == 0
+    said = doubts(found["spectra"])
+    assert any(line.startswith("there is no focus law at 1 of 2 combinations") for line in said)
+    assert any("raise tracing.rays" in line for line in said)
+    assert "over 2 combinations" in summary(found["phase_slope"])
+    with pytest.raises(OctsimError, match="there is no law"):
+        run(gridded({"focus_law.fraction.stop": [0.41, 0.42]}))
+
+
+@pytest.mark.parametrize("name", GRIDS)
+def test_the_points_of_a_stage_s_parts_are_all_that_its_layout_counts(name: str) -> None:
+    config = gridded(GRIDS[name], GIVEN)
+    sweep = octsim.focus_sweep(config)
+    for stream in (
+        octsim.focus_scan.stream(config),
+        octsim.focus_sweep.stream(config),
+        octsim.gaussian_fits.stream(config, sweep),
+        octsim.detections.stream(
+            config, octsim.focus_law(config, octsim.gaussian_fits(config, sweep))
+        ),
+    ):
+        assert sum(part.points for part in stream.parts) == stream.layout.points
 
 
 def test_a_part_of_a_combination_is_read_alone() -> None:

@@ -12,6 +12,7 @@ _MOST_LINES = 8
 _COLOURS = (BLUE, ORANGE, GREEN, VERMILION, SKY, PURPLE, BLACK, "0.5")
 _MARKERS = "osD^v<>p"
 _MOST_NAMES = 12  # along an axis
+_MOST_LETTERS = 90  # of a line of the legend
 
 
 def figure_grid(slopes: xr.Dataset) -> Figure:
@@ -24,8 +25,8 @@ def figure_grid(slopes: xr.Dataset) -> Figure:
     along = max(map(str, mean.dims), key=lambda dim: (dim in _numeric(slopes), mean.sizes[dim]))
     others = [str(dim) for dim in mean.dims if dim != along]
     panels = {
-        "mean_phase_slope": "mean phase slope",
-        "phase_slope_standard_deviation": "scatter over the diameters",
+        "mean_phase_slope": "mean slope",
+        "phase_slope_standard_deviation": "scatter",
     }
     rows = {
         name: slopes[name].transpose(*others, along).values.reshape(-1, mean.sizes[along])
@@ -45,6 +46,7 @@ def figure_grid(slopes: xr.Dataset) -> Figure:
         for number, values in enumerate(rows[name]):
             panel.plot(
                 x, values, color=_COLOURS[number], marker=_MARKERS[number], markersize=4,
+                linestyle="-" if along in _numeric(slopes) else "none",
                 label=_told(slopes, others, number),
             )  # fmt: skip
         panel.set_ylabel(label(slopes[name], text))
@@ -52,10 +54,10 @@ def figure_grid(slopes: xr.Dataset) -> Figure:
         axes[-1].set_xticks(x, names, rotation=30, ha="right")
     axes[-1].set_xlabel(label(slopes[along]) if along in slopes.coords else "Combination")
     axes[0].set_title(title(slopes, "Phase slope across the grid"))
-    if others and count <= _MOST_LINES:
-        figure.legend(
-            *axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, fontsize=8
-        )
+    if 1 < count <= _MOST_LINES:
+        lines, names = axes[0].get_legend_handles_labels()
+        columns = 2 if max(map(len, names)) <= _MOST_LETTERS // 2 else 1
+        figure.legend(lines, names, loc="outside lower center", ncols=columns, fontsize=8)
     return figure
 
 
@@ -72,7 +74,8 @@ def _positions(slopes: xr.Dataset, along: str) -> tuple[Any, list[str]]:
     beside = [c for c in slopes.coords.values() if c.dims == (along,)]
     if count > _MOST_NAMES:
         return places, []
-    return places, [", ".join(f"{c.values[place]}" for c in beside) for place in places]
+    names = [", ".join(f"{c.values[place]}" for c in beside) for place in places]
+    return places, [_shortened(name, _MOST_LETTERS // 3) for name in names]
 
 
 def _told(slopes: xr.Dataset, others: list[str], number: int) -> str:
@@ -80,10 +83,16 @@ def _told(slopes: xr.Dataset, others: list[str], number: int) -> str:
     place = np.unravel_index(number, [slopes.sizes[dim] for dim in others]) if others else ()
     told = []
     for dim, row in zip(others, place, strict=True):
+        if slopes.sizes[dim] == 1:
+            continue
         for name, coordinate in slopes.coords.items():
             if coordinate.dims == (dim,):
                 value = coordinate.values[row]
                 text = f"{value:.6g}" if coordinate.dtype.kind == "f" else str(value)
                 unit = {"um": " µm"}.get(str(coordinate.attrs["units"]), "")
                 told.append(f"{str(name).replace('_', ' ')} {text}{unit}")
-    return ", ".join(told)
+    return _shortened(", ".join(told), _MOST_LETTERS)
+
+
+def _shortened(text: str, most: int) -> str:
+    return text if len(text) <= most else text[: most - 1] + "…"

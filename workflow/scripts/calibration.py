@@ -10,13 +10,13 @@ from octsim.datasets import write
 from octsim.figures.calibration import calibration_figure
 from octsim.figures.style import look, save
 from octsim.grid import without_grid
-from octsim.sweep import unreached
+from octsim.sweep import doubts
 
 with job(snakemake) as given, look():
     config = without_grid(given, "calibration")
     law = fitted_law(snakemake, config)
     table = calibration(config, law, snakemake.threads)
-    if said := unreached(table):
+    for said in doubts(table):
         logging.warning("octsim: warning: %s", said)
     write(table, snakemake.output.calibration[0])
     for file in map(Path, snakemake.output.figures):

@@ -9,6 +9,7 @@ from job import end_with_the_run, job
 from octsim.datasets import read
 from octsim.figures import FIGURES
 from octsim.figures.style import look, save
+from octsim.gallery import NOT_DRAWN
 
 
 def draw(name: str) -> None:
@@ -20,7 +21,12 @@ def draw(name: str) -> None:
 
 
 with job(snakemake) as config, look():
-    stages = {stage: read(file, stage, config) for stage, file in snakemake.input.items()}
     names = dict.fromkeys(Path(file).stem for file in snakemake.output)
+    left = [variable for name in names for variable in NOT_DRAWN.get(name, ())]
+    stages = {stage: read(file, stage, config, left) for stage, file in snakemake.input.items()}
     with ProcessPoolExecutor(snakemake.threads, get_context("fork"), end_with_the_run) as pool:
         list(pool.map(draw, names))
+    folder = Path(snakemake.output[0]).parent
+    for stale in set(FIGURES) - set(names):  # of the config before
+        for file in folder.glob(f"{stale}.*"):
+            file.unlink()

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from octsim.config import Config
 from octsim.errors import OctsimError, OctsimWarning
+from octsim.files import whole
 from octsim.loading import load_config
 
 if TYPE_CHECKING:
@@ -72,11 +73,12 @@ def points(snakemake: Any, config: Config) -> Iterator["Points"]:
     from octsim.cache import opened
     from octsim.points import Points
 
-    with opened(Path(config.cache.file), config.cache.gigabytes) as cache:
+    with opened(Path(config.cache.file).expanduser(), config.cache.gigabytes) as cache:
         whence = Points(cache)
         try:
             yield whence
         finally:
             whence.keep()
     counts = {"points_traced": whence.traced, "points_from_cache": whence.from_cache}
-    Path(snakemake.log.points).write_text(json.dumps(counts) + "\n", encoding="utf-8")
+    with whole(Path(snakemake.log.points)) as file:
+        file.write_text(json.dumps(counts) + "\n", encoding="utf-8")

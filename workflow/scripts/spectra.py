@@ -8,7 +8,7 @@ from octsim.datasets import opened
 from octsim.netcdf import write_stream
 from octsim.progress import watched
 from octsim.shares import light_paths
-from octsim.sweep import spectra, unreached
+from octsim.sweep import doubts, spectra
 
 with job(snakemake) as config:
     with opened(snakemake.input.detections, "detections", config) as detected:
@@ -16,5 +16,5 @@ with job(snakemake) as config:
         write_stream(watched(summed), snakemake.output.spectra)
         write_stream(watched(light_paths.stream(config, detected)), snakemake.output.paths)
     with opened(snakemake.output.spectra, "spectra", config) as measured:
-        if said := unreached(measured):
+        for said in doubts(measured):
             logging.warning("octsim: warning: %s", said)
