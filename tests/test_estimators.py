@@ -16,6 +16,7 @@ from octsim.comparison import estimators, from_trend, summary
 from octsim.config import Config, Processing
 from octsim.contenders import COMMON, CONTENDERS, Band, contenders, slopes
 from octsim.errors import OctsimError
+from octsim.estimation import estimator_of
 from octsim.estimators import ESTIMATORS, estimate
 from octsim.estimators.estimate import middle, place
 from octsim.estimators.likelihood import Model, maximum_likelihood
@@ -370,3 +371,16 @@ def test_likelihood_of_a_spectrum_does_not_depend_on_its_neighbours() -> None:
         whole = maximum_likelihood(counts, model, read_noise)
         one = [maximum_likelihood(row[np.newaxis], model, read_noise)[0] for row in counts]
         assert one == whole.tolist()
+
+
+def test_a_sweep_has_no_common_envelope() -> None:
+    common = {"estimator": "sinusoid", "sinusoid": {"envelope": "common"}}
+    with pytest.raises(octsim.ConfigError, match="a sweep needs 'each'"):
+        octsim.load_config({"processing": common})
+
+
+@pytest.mark.parametrize("name", ["fft", "sinusoid", "esprit", "maximum_likelihood"])
+def test_where_there_is_no_focus_there_is_no_phase(name: str) -> None:
+    config = octsim.load_config({"processing": {"estimator": name}})
+    found = estimator_of(config, np.full(151, np.nan))(np.full((3, 1000), np.nan), np.ones(3))
+    assert np.isnan(found).all()

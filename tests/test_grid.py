@@ -316,3 +316,8 @@ def test_a_target_of_a_single_config_refuses_a_grid() -> None:
     with pytest.raises(ConfigError, match=r"grid: scene.gap given, but tradeoff is of a single"):
         without_grid(gridded({"scene.gap": ["0 nm", "30 nm"]}), "tradeoff")
     assert without_grid(load_config(SMALL), "tradeoff") == load_config(SMALL)
+
+
+def test_a_key_of_a_target_that_a_run_has_once_is_not_varied() -> None:
+    with pytest.raises(ConfigError, match="grid.calibration.step: can't be varied"):
+        load_config({"grid": {"calibration.step": ["0.1 nm", "0.2 nm"]}})
