@@ -149,6 +149,8 @@ def calibration_page(results: Path) -> str:
         trace_covered=f"{100 * float((np.abs(off) <= 1e3 * stated).mean()):.0f}",
         top=f"{float(off.where(top).mean()):+.1f}",
         fft_top=f"{float(fft_off.where(top).mean()):+.1f}",
+        oscillation=f"{float((of_fft / slope).interp(diameter=EXAMPLE[1])):+.1%}".replace("-", "−"),
+        most_oscillation=f"{float(np.abs(of_fft / slope).max()):.1%}",
         trips=trips(fired),
         trials=TRIALS,
         rest=REST,
@@ -252,8 +254,10 @@ simulated at its diameter at that time, each with {photons} photons of shot nois
 pixels of a line camera hold, and turned to nanometres by the calibration. The recovered trace is
 {off} pm rms a spectrum from the truth, where {statistical} are stated; {trace_covered} % of it is
 within its stated error. Around the top (above 90 %) it is {top} pm off as a mean, the thesis's way
-(its transform's phase over its predicted slope) {fft_top} pm. How much that would be elsewhere
-changes with the diameter, on the right.
+(its transform's phase over its predicted slope) {fft_top} pm. Most of that is the focus, which the
+predicted slope takes to follow the diameter; the oscillation alone (the transform's slope at a held
+focus, over the calibrated one) is {oscillation} here and up to {most_oscillation} elsewhere, as
+the figure shows on the right.
 
 **Round trips**: {trials} at each of some diameters between those of the table (seed {seed}). Each
 knows {rest} noisy spectra at rest and one at 1 nm. With the instrument as believed only the
@@ -262,6 +266,20 @@ without noise only the systematic one counts; then both.
 
 {trips}
 A standard error should cover 68 %; {many} trips tell it to about 1.5.
+
+## Spectra of your own
+
+A CSV file has a first column `wavelength (nm)`, or `wavenumber (1/um)` (2π/λ), and a column of
+intensity for each spectrum; a netCDF file has a variable intensity along such a coordinate. The
+phases have to be those of the calibration's estimator:
+
+```python
+from octsim.calibrate import calibrating
+
+depth = config.scene.refractive_index.neuron * 1.4  # of the neuron's two sides, µm
+phase = octsim.phase_of("spectra.csv", calibrating(config), nominal_depth=depth).phase
+octsim.expansion(phase - phase[0], 1.4, calibration)
+```
 
 ## References
 

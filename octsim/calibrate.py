@@ -145,8 +145,15 @@ def _measure(
     ]
     spectra, errors, status = zip(*(look.instrument(*look[1:]) for look in looks), strict=True)
     stack, num = np.stack(spectra), offsets.size
-    phases = series_phases(stack, k, depth, calibrating(config))
-    of_fft = series_phases(stack[: 2 * num], k, depth, by_fft(config))
+
+    def phases_of(spectra: Array, processing: Processing, *sizes: int) -> Array:
+        # what an estimator takes from the whole of a series is that of one instrument's
+        series = np.split(spectra, np.cumsum(sizes)[:-1])
+        return np.concatenate([series_phases(one, k, depth, processing) for one in series])
+
+    sizes = num, num, num, *(2 for _ in range((len(stack) - 3 * num) // 2))
+    phases = phases_of(stack, calibrating(config), *sizes)
+    of_fft = phases_of(stack[: 2 * num], by_fft(config), num, num)
     fixed, following, focused = (
         derivative(offsets, wrapped(part - part[num // 2]))
         for part in np.split(phases[: 3 * num], 3)

@@ -59,14 +59,15 @@ def estimator_of(config: Config, foci: Array) -> EstimatorOf:
 
 
 def ideal_phases(config: Config, spectra: Array, diameter: Array, wavenumber: Array) -> Array:
-    """Estimate the phases (D,) of ideal spectra cos(2ndk), (D, K), on an offset of one.
+    """Estimate the phases (D,) of ideal spectra cos(2ndk), (D, K).
 
-    Maximum likelihood, whose model they are not, has the prediction's.
+    They are those of 1 − cos(2ndk), half a turn away: of opposite reflections, from whose phase a
+    fringe's order is counted. Maximum likelihood, whose model they are not, has the prediction's.
     """
     n_neuron, processing = config.scene.refractive_index.neuron, config.processing
     if processing.estimator == "maximum_likelihood":
         return predicted_phase_slope(n_neuron, wavenumber[0], wavenumber[-1]) * diameter
-    return estimate(1 + spectra, wavenumber, n_neuron * diameter, processing).phase
+    return estimate(1 - spectra, wavenumber, n_neuron * diameter, processing).phase
 
 
 def phase_of(
@@ -113,7 +114,8 @@ def phase_of(
     if processing.estimator == "maximum_likelihood":
         raise ConfigError(
             "processing.estimator: 'maximum_likelihood' given, which compares with modelled "
-            "spectra; use octsim.estimation.modelled and octsim.estimators.likelihood"
+            "spectra; use octsim.modelled.model_of_sweep and "
+            "octsim.estimators.likelihood.maximum_likelihood"
         )
     if processing.estimator != "fft" and processing.depth == "nominal" and nominal_depth is None:
         raise ConfigError(

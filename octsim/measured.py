@@ -108,8 +108,13 @@ def _wavenumbers(along: Array, axis: str, units: str, name: str) -> Array:
     """Convert wavelengths or wavenumbers of some unit to wavenumbers in 1/µm."""
     length = units
     if axis == "wavenumber":
-        inverse = re.fullmatch(r"(?:1\s*/\s*)(\S+)|(\S+?)\s*(?:\^|\*\*)?\s*-1", units)
+        inverse = re.fullmatch(r"(?:(?:1|rad)\s*/\s*)(\S+)|(\S+?)\s*(?:\^|\*\*)?\s*-1", units)
         length = next(filter(None, inverse.groups())) if inverse else "none"
+        if length == "cm":
+            raise DatasetError(
+                f"{name}: wavenumber has the unit {units!r}, by which most mean 1/λ; here it is "
+                "2π/λ: give wavelengths, or rad/um"
+            )
     try:
         scale = parse_length(f"1 {length}")
     except ValueError:

@@ -63,14 +63,18 @@ def value_of(config: Config, name: str) -> float:
 
 def offsets_of(config: Config, name: str) -> Array:
     """Give five changes of a parameter, (5,), that leave it possible."""
-    parameter, at = PARAMETERS[name], value_of(config, name)
-    least, most = parameter.least, parameter.most
+    return stencil(value_of(config, name), PARAMETERS[name].step, *limits(config, name))
+
+
+def limits(config: Config, name: str) -> tuple[float, float]:
+    """Give the least and the most that a parameter may be, with the others within theirs."""
+    least, most = PARAMETERS[name].least, PARAMETERS[name].most
     glass, aperture = config.scene.refractive_index.glass, config.objective.numerical_aperture
     if name == "glass":
         least = max(least, (glass + aperture) / 2)
     if name == "numerical_aperture":
-        most = (glass + aperture) / 2
-    return stencil(at, parameter.step, least, most)
+        most = aperture + 0.49 * (glass - aperture)
+    return least, most
 
 
 def moved(config: Config, changes: Mapping[str, float], law_slope: float) -> Place:
@@ -91,9 +95,10 @@ def moved(config: Config, changes: Mapping[str, float], law_slope: float) -> Pla
 def drawn(config: Config, generator: np.random.Generator, law_slope: float) -> Place:
     """Draw an instrument and a neuron from the tolerances: normal, within what is possible."""
     changes = {}
-    for name, parameter in PARAMETERS.items():
+    for name in PARAMETERS:
         by = generator.normal(0.0, getattr(config.calibration.tolerances, name))
-        changes[name] = max(by, parameter.least - value_of(config, name))
+        at, (least, most) = value_of(config, name), limits(config, name)
+        changes[name] = min(max(by, least - at), most - at)
     return moved(config, changes, law_slope)
 
 

@@ -48,7 +48,7 @@ def explain(error: ErrorDetails) -> str:
     path = ".".join(place)
     listed = isinstance(error["input"], list | tuple) and error["type"] != "model_type"
     key = next((name for name in (place[-1], path) if name in set(known_keys())), None)
-    if listed and key:
+    if listed and key and key != "processing.window":
         return (
             f"{path}: {error['input']!r} given; several values of one key stand in the grid: "
             f"write grid: {{{key}: [...]}}"

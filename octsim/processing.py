@@ -25,7 +25,7 @@ def _is_made(value: tuple[str | float, ...]) -> tuple[str | float, ...]:
     try:
         if np.isfinite(get_window(value, 64, fftbins=False)).all():
             return value
-    except (ValueError, TypeError, ArithmeticError) as error:
+    except (ValueError, TypeError, ArithmeticError, IndexError) as error:
         raise ValueError(f"scipy.signal has no such window: {error}") from None
     raise ValueError("scipy.signal makes that window of values that are not finite")
 
@@ -66,7 +66,7 @@ class Sinusoid(Section):
 class Hilbert(Section):
     """The phase of the analytic signal: Fourier transform, band, inverse transform."""
 
-    band: Annotated[Number, Field(gt=0, le=1)] = key(
+    band: Annotated[Number, Field(ge=0.1, le=1)] = key(
         0.5, "half width of the band of depths that is kept, over the depth"
     )
 
@@ -86,7 +86,7 @@ PhaseEstimator = Literal["fft", "zero_padded", "sinusoid", "hilbert", "esprit", 
 class Processing(Section):
     """From a spectrum to a phase."""
 
-    estimator: PhaseEstimator | Literal["maximum_likelihood"] = key(
+    estimator: Literal[PhaseEstimator, "maximum_likelihood"] = key(
         "fft", "of the phase, or of the diameter; fft is the thesis's Fourier transform"
     )
     centre: Literal["midpoint", "mean", "weighted", "polynomial"] = key(

@@ -10,7 +10,7 @@ _SPIRAL = ("tracing.rays", "tracing.min_amplitude")
 
 _COMPARED = ("scene", "objective", "detector", "tracing", "spectrum", "sweep", "processing")
 # spectra as accurate as small steps need, whatever the run's scheme
-_CALIBRATED = (
+_CALIBRATED = ("tracing.min_amplitude",
     "scene", "objective", "detector", "tracing.max_intersections", "spectrum", "processing",
     "calibration", "sweep.focus",
 )  # fmt: skip

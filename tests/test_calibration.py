@@ -308,3 +308,13 @@ def test_the_table_explains_itself_is_read_back_and_drawn(
 def test_a_law_that_is_needed_is_asked_for() -> None:
     with pytest.raises(OctsimError, match=r"sweep.focus: 'law' given"):
         calibration(load_config())
+
+
+@pytest.mark.parametrize("aperture", [1.5, 1.51])
+def test_an_instrument_near_its_limits_is_drawn_within_them(aperture: float) -> None:
+    config = load_config({"objective": {"numerical_aperture": aperture}})
+    generator = np.random.default_rng(1)
+    for _ in range(300):
+        place = drawn(config, generator, 0.58)
+        glass = place.config.scene.refractive_index.glass
+        assert place.config.objective.numerical_aperture < glass

@@ -170,3 +170,13 @@ def test_a_processing_that_measured_spectra_can_t_have_is_refused() -> None:
         octsim.phase_of(dataset, Processing(estimator="maximum_likelihood"))
     nominal = octsim.phase_of(dataset, Processing(estimator="sinusoid"), nominal_depth=1.95)
     assert np.abs(nominal.phase - PHASES).max() < 1e-6
+
+
+def test_a_wavenumber_that_most_mean_otherwise_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "spectra.csv"
+    file.write_text("wavenumber (1/cm),a\n11000,1\n11500,2\n12000,1\n", encoding="utf-8")
+    with pytest.raises(DatasetError, match="by which most mean 1/λ; here it is 2π/λ"):
+        read_spectra(file)
+    rows = "".join(f"{7 + 0.1 * number},1\n" for number in range(20))
+    file.write_text(f"wavenumber (rad/um),a\n{rows}", encoding="utf-8")
+    assert read_spectra(file).wavenumber[0] == 7

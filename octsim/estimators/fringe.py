@@ -50,7 +50,7 @@ def fringe(intensity: Array, wavenumber: Array, depth: Array, processing: Proces
     parity = (half_turn + 1) % 2
     order = parity + 2 * np.round((2 * depth * at / np.pi - parity) / 2)
     found = order * np.pi / (2 * at)
-    return Estimate(2 * found * k_mid, found)
+    return Estimate(2 * found * k_mid + np.pi, found)
 
 
 def _extremum(wavenumber: Array, spectrum: Array, start: float, reach: float) -> float:
