@@ -54,6 +54,14 @@ def as_text(value: Any) -> str:
     return str(value)
 
 
+def value_at(config: Config, key: str) -> Any:
+    """Give what a dotted key of a config is, in its own units; None if it has no such part."""
+    value: Any = config
+    for name in key.split("."):
+        value = getattr(value, name, None)
+    return value
+
+
 def overlap(one: str, other: str) -> bool:
     """Tell whether one of two dotted keys is the other, or holds it."""
     return f"{one}.".startswith(f"{other}.") or f"{other}.".startswith(f"{one}.")

@@ -12,8 +12,9 @@ from pydantic import ValidationError
 from octsim.checks import impossible
 from octsim.config import Config, Grid
 from octsim.errors import ConfigError
-from octsim.grid import FIXED, as_text, axes, combinations, config_at, overlap
+from octsim.grid import FIXED, as_text, axes, combinations, config_at, overlap, value_at
 from octsim.problems import explain, known_keys, nearest_key
+from octsim.reading import part_of
 from octsim.sections import DECIMALS
 from octsim.units import format_length, parse_length
 
@@ -48,7 +49,7 @@ def expanded(config: Config) -> Config:
                     of_grid = any(overlap(line.split(":")[0], other) for other in listed)
                     problems[f"grid.{line}" if of_grid else line] = None
             else:
-                plain[key][position] = _plain(one.to_dict(), key)
+                plain[key][position] = part_of(one.to_dict(), key)
     _raise(problems)
     checked = given.model_copy(update={"grid": _grid(config, plain)})
     _check_rows(checked)
@@ -65,12 +66,6 @@ def _zipped(config: Config) -> bool:
 
 def _grid(config: Config, values: Mapping[str, list[Any]]) -> Grid:
     return Grid.model_validate({"combine": config.grid.combine, **values})
-
-
-def _plain(data: Any, key: str) -> Any:
-    for name in key.split("."):
-        data = data[name]
-    return data
 
 
 def _raise(problems: Mapping[str, None]) -> None:
@@ -141,19 +136,12 @@ def _spaced(key: str, given: Mapping[str, Any]) -> list[Any]:
         return [format_length(value) for value in values]
     if not all(isinstance(end, int) for end in ends):
         return values
-    if not all(map(float.is_integer, values)) and isinstance(_default(key), int):
+    if not all(map(float.is_integer, values)) and isinstance(value_at(Config(), key), int):
         raise ConfigError(
             f"grid.{key}: {dict(given)} given; its {num} values are not all whole numbers; choose "
             "a num that divides the range, or list them"
         )
     return [int(value) if value.is_integer() else value for value in values]
-
-
-def _default(key: str) -> Any:
-    value: Any = Config()
-    for name in key.split("."):
-        value = getattr(value, name, None)
-    return value
 
 
 def _check_keys(config: Config, listed: Mapping[str, list[Any]]) -> None:

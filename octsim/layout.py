@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from octsim.config import Config
-from octsim.grid import Axis, Combination, as_text, combinations, dimension_name
+from octsim.grid import Axis, Combination, as_text, combinations, dimension_name, value_at
 from octsim.meanings import meaning
 from octsim.problems import unit_of
 from octsim.reading import keys_behind, stage_axes
@@ -115,7 +115,7 @@ class Layout:
         """The whole dataset's dimensions whose length is not that of every combination."""
         return frozenset(self.dimension(d) for d, sizes in self._lengths.items() if len(sizes) > 1)
 
-    @property
+    @cached_property
     def sizes(self) -> Mapping[str, int]:
         """Length of each of the whole dataset's dimensions, but for ragged ones."""
         own = {self.dimension(name): max(sizes) for name, sizes in self._lengths.items()}
@@ -189,17 +189,10 @@ def axis_coordinates(
         # one combination for each row of this axis
         rows = {at.position[place]: at.config for at in reversed(along)}
         for number, key in enumerate(axis.keys):
-            values: list[Any] = [_value(rows[row], key) for row in range(len(axis.rows))]
+            values: list[Any] = [value_at(rows[row], key) for row in range(len(axis.rows))]
             if not all(isinstance(v, int | float) and not isinstance(v, bool) for v in values):
                 values = [as_text(row[number]) for row in axis.rows]
             words = key.replace(".", " ").replace("_", " ")
             attributes = {"units": unit_of(key), "long_name": words, "config_key": key}
             found[dimension_name(key)] = xr.Variable((axis.name,), np.array(values), attributes)
     return found
-
-
-def _value(config: Config, key: str) -> Any:
-    value: Any = config
-    for name in key.split("."):
-        value = getattr(value, name, None)
-    return value
