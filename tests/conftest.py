@@ -1,5 +1,10 @@
 """What all tests share."""
 
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
 import pytest
 import xarray as xr
 from hypothesis import settings
@@ -10,6 +15,22 @@ from octsim.loading import load_config
 # The same draws every time: a failure on a contributor's machine is a failure on every machine.
 settings.register_profile("octsim", derandomize=True, deadline=None)
 settings.load_profile("octsim")
+ROOT = Path(__file__).parent.parent
+
+
+@pytest.fixture
+def planned(tmp_path: Path) -> Callable[..., str]:
+    """Tell what snakemake would do for some targets, in an empty folder."""
+
+    def planned(*targets: str) -> str:
+        snakemake = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
+        done = subprocess.run(
+            [*snakemake, *targets, "--dry-run", "--cores", "1"],
+            cwd=tmp_path, capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        return done.stdout + done.stderr
+
+    return planned
 
 
 @pytest.fixture(scope="session")

@@ -1,8 +1,7 @@
 """The trade of cost for accuracy: errors fall with it, the frontier is one, presets are points."""
 
 import math
-import subprocess
-import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +19,6 @@ from octsim.loading import load_config
 from octsim.settings import is_the_runs, preset_of, settings
 from octsim.tradeoff import intensity_errors, summary, tradeoff
 
-ROOT = Path(__file__).parent.parent
 TINY = load_config({
     "spectrum": {"samples": 100},
     "focus_law": {
@@ -158,14 +156,6 @@ def test_the_dataset_explains_itself_and_is_drawn(measured: xr.Dataset, tmp_path
         save(tradeoff_figure(stored), tmp_path / "tradeoff.png")
 
 
-def test_the_target_has_its_name_and_is_no_part_of_a_run(tmp_path: Path) -> None:
-    def planned(*targets: str) -> str:
-        snakemake = [sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")]
-        done = subprocess.run(
-            [*snakemake, *targets, "--dry-run", "--cores", "1"],
-            cwd=tmp_path, capture_output=True, text=True, check=True,
-        )  # fmt: skip
-        return done.stdout + done.stderr
-
+def test_the_target_has_its_name_and_is_no_part_of_a_run(planned: Callable[..., str]) -> None:
     assert "Measure error and cost" in planned("tradeoff")
     assert "Measure error and cost" not in planned()
