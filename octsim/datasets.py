@@ -14,11 +14,13 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from octsim.config import Config
+from octsim.environment import environment
 from octsim.errors import DatasetError
 from octsim.files import reason, whole
 from octsim.meanings import meaning
 from octsim.provenance import source_digest
 from octsim.reading import keys_behind, parts_of
+from octsim.schema import SCHEMA, upgraded
 
 CHUNK_CACHE = 1_000_000
 """Bytes that are held of each variable that is read or written in chunks."""
@@ -55,7 +57,7 @@ def make(
     return dataset
 
 
-def attributes(stage: str, config: Config, title: str, module: str) -> dict[str, str]:
+def attributes(stage: str, config: Config, title: str, module: str) -> dict[str, Any]:
     """Give what a stage's dataset says of itself: what it is, and all it takes to make it again."""
     data = config.to_dict()
     del data["cache"]  # no result depends on it
@@ -63,8 +65,10 @@ def attributes(stage: str, config: Config, title: str, module: str) -> dict[str,
         "Conventions": "CF-1.11",
         "title": title,
         "stage": stage,
+        "schema_version": SCHEMA,
         "config": json.dumps(data),
         "octsim_version": version("octsim"),
+        "environment": json.dumps(environment()),
         "source_digest": source_digest(module),
         "creation_command": (
             "save the attribute 'config' of this file as config.json, then: "
@@ -92,15 +96,18 @@ def write(dataset: xr.Dataset, path: str | Path) -> None:
 
 
 def read(
-    path: str | Path, stage: str, config: Config | None = None, without: Iterable[str] = ()
+    path: str | Path,
+    stage: str | None = None,
+    config: Config | None = None,
+    without: Iterable[str] = (),
 ) -> xr.Dataset:
-    """Read a dataset of a stage into memory.
+    """Read a stored dataset into memory, as this octsim writes it.
 
     Parameters
     ----------
     path : path
         The file.
-    stage : str
+    stage : str, optional
         Stage that it has to be of.
     config : Config, optional
         Config that it has to follow from, as far as its stage depends on one.
@@ -110,7 +117,8 @@ def read(
     Raises
     ------
     DatasetError
-        If the file is missing, damaged, not a dataset of that stage, or made from another config.
+        If the file is missing, damaged, not a dataset of that stage, made from another config, or
+        of a version of octsim that this one can't read.
     """
     with opened(path, stage, config) as dataset:
         try:
@@ -120,8 +128,10 @@ def read(
 
 
 @contextmanager
-def opened(path: str | Path, stage: str, config: Config | None = None) -> Iterator[xr.Dataset]:
-    """Open a dataset of a stage, to read parts of it.
+def opened(
+    path: str | Path, stage: str | None = None, config: Config | None = None
+) -> Iterator[xr.Dataset]:
+    """Open a stored dataset, to read parts of it.
 
     Parameters and what is raised are those of `read`.
     """
@@ -131,14 +141,14 @@ def opened(path: str | Path, stage: str, config: Config | None = None) -> Iterat
     try:
         dataset = xr.open_dataset(path, engine="netcdf4", cache=False)
     except FileNotFoundError:
-        raise DatasetError(f"{path}: not there; run the stage {stage} first") from None
+        remedy = f"run the stage {stage} first" if stage else "give a dataset of octsim"
+        raise DatasetError(f"{path}: not there; {remedy}") from None
     except (OSError, RuntimeError, ValueError) as error:
         raise _unreadable(path, error) from None
     finally:
         netCDF4.set_chunk_cache(*usual)
     with dataset:
-        _check(dataset, path, stage, config)
-        yield dataset
+        yield _checked(dataset, path, stage, config)
 
 
 def _remedy(path: Path) -> str:
@@ -149,12 +159,18 @@ def _unreadable(path: Path, error: Exception) -> DatasetError:
     return DatasetError(f"{path}: can't be read ({reason(error)}); {_remedy(path)}")
 
 
-def _check(dataset: xr.Dataset, path: Path, stage: str, config: Config | None) -> None:
-    """Refuse a dataset of another stage or config."""
-    if dataset.attrs.get("stage") != stage:
-        raise DatasetError(f"{path}: not octsim's dataset of the stage {stage}; {_remedy(path)}")
+def _checked(
+    dataset: xr.Dataset, path: Path, stage: str | None, config: Config | None
+) -> xr.Dataset:
+    """Refuse a dataset of another stage, config or time; give it as this octsim writes it."""
+    found = dataset.attrs.get("stage")
+    if found is None or found != (stage or found):
+        what = f"octsim's dataset of the stage {stage}" if stage else "a dataset of octsim"
+        raise DatasetError(f"{path}: not {what}; {_remedy(path)}")
+    dataset = upgraded(dataset, path)
     if config is None:
-        return
+        return dataset
+    stage = str(found)
     keys = keys_behind(stage, config)
     made_from = parts_of(json.loads(dataset.attrs["config"]), *keys)
     asked = parts_of(config.to_dict(), *keys)
@@ -165,6 +181,7 @@ def _check(dataset: xr.Dataset, path: Path, stage: str, config: Config | None) -
         raise DatasetError(
             f"{path}: made from another config (its {', '.join(differ)} differ); {_remedy(path)}"
         )
+    return dataset
 
 
 def flags(
