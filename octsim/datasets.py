@@ -19,7 +19,7 @@ from octsim.errors import DatasetError
 from octsim.files import reason, whole
 from octsim.meanings import meaning
 from octsim.provenance import source_digest
-from octsim.reading import keys_behind, parts_of
+from octsim.reading import differing
 from octsim.schema import SCHEMA, upgraded
 
 CHUNK_CACHE = 1_000_000
@@ -170,13 +170,7 @@ def _checked(
     dataset = upgraded(dataset, path)
     if config is None:
         return dataset
-    stage = str(found)
-    keys = keys_behind(stage, config)
-    made_from = parts_of(json.loads(dataset.attrs["config"]), *keys)
-    asked = parts_of(config.to_dict(), *keys)
-    differ = [
-        key for key in dict.fromkeys((*asked, *made_from)) if made_from.get(key) != asked.get(key)
-    ]
+    differ = differing(str(found), config, json.loads(dataset.attrs["config"]))
     if differ:
         raise DatasetError(
             f"{path}: made from another config (its {', '.join(differ)} differ); {_remedy(path)}"

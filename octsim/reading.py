@@ -122,3 +122,13 @@ def parts_of(data: Mapping[str, Any], *keys: str) -> dict[str, object]:
     }
     how = {"grid.combine": grid["combine"]} if varied else {}
     return {key: part_of(data, key) for key in keys} | varied | how
+
+
+def differing(stage: str, config: Config, other: Mapping[str, Any]) -> list[str]:
+    """Give the keys that a stage's dataset depends on and that another config, as data, differs in.
+
+    Keys are those that the stage depends on under `config`; a varied one is ``grid.<key>``.
+    """
+    keys = keys_behind(stage, config)
+    asked, made = parts_of(config.to_dict(), *keys), parts_of(other, *keys)
+    return [key for key in dict.fromkeys((*asked, *made)) if made.get(key) != asked.get(key)]
