@@ -22,6 +22,7 @@ from octsim.grid import remarks
 from octsim.loading import load_config
 from octsim.provenance import source_digest
 from octsim.reading import keys_read, needs_law, parts_of
+from octsim.scatter import SCATTERED, shares_of
 
 try:
     # the files themselves too, as snakemake's own reading lets a key stand twice
@@ -51,8 +52,10 @@ STAGES = (
     "phase_slope",
 )
 FIGURES = figures_of(run)
+SHARES = shares_of(run)  # a stage that takes long is scattered over several jobs
+LAW_SWEPT = f"results/{run.run}/focus_law.nc" if needs_law(run) else []
 # of targets of a single config; a job of a grid says so at once, and no law is fitted for it
-LAW = f"results/{run.run}/focus_law.nc" if needs_law(run) and not run.grid.varied else []
+LAW = LAW_SWEPT if not run.grid.varied else []
 # a measured series is a file of the user's; one that is not there is said by the job
 SERIES = [file for file in [run.expansion.series] if file and Path(file).is_file()]
 LOCK = FileLock(f"results/{run.run}/.lock")  # held from the start of a run to its end
@@ -62,6 +65,9 @@ BENCHMARKS = Path(workflow.basedir) / "benchmarks"
 
 wildcard_constraints:
     run=run.run,
+    stage="|".join(SCATTERED),
+    number=r"\d+",
+    of=r"\d+",
 
 
 def made_from(script: str, *keys: str) -> dict[str, object]:
@@ -75,6 +81,12 @@ def made_from(script: str, *keys: str) -> dict[str, object]:
 def of_stage(stage: str) -> dict[str, object]:
     """Give what a stage's results follow from."""
     return made_from(stage, *keys_read(stage, run))
+
+
+def shares(stage: str) -> list[str]:
+    """Give the files that a stage is gathered from; none where it is one job."""
+    of = SHARES[stage] if SHARES[stage] > 1 else 0
+    return [f"results/{run.run}/shares/{stage}-{n}-of-{of}.npz" for n in range(1, of + 1)]
 
 
 onstart:
@@ -118,7 +130,25 @@ rule all:
         ),
 
 
+rule share:
+    input:
+        focus_law=lambda wildcards: LAW_SWEPT if wildcards.stage == "detections" else [],
+        shares=[],
+    output:
+        temp("results/{run}/shares/{stage}-{number}-of-{of}.npz"),
+    log:
+        "results/{run}/logs/shares/{stage}-{number}-of-{of}.log",
+    params:
+        made_from=lambda wildcards: of_stage(wildcards.stage),
+    message:
+        "Trace share {wildcards.number} of {wildcards.of} of {wildcards.stage}"
+    script:
+        "workflow/scripts/{wildcards.stage}.py"
+
+
 rule focus_scan:
+    input:
+        shares=shares("focus_scan"),
     output:
         update("results/{run}/focus_scan.nc"),
     log:
@@ -136,6 +166,8 @@ rule focus_scan:
 
 
 rule focus_sweep:
+    input:
+        shares=shares("focus_sweep"),
     output:
         update("results/{run}/focus_sweep.nc"),
     log:
@@ -173,7 +205,8 @@ rule focus_law:
 rule detections:
     input:
         # a given focus needs no law, and is not traced again when the law changes
-        focus_law="results/{run}/focus_law.nc" if needs_law(run) else [],
+        focus_law=LAW_SWEPT,
+        shares=shares("detections"),
     output:
         update("results/{run}/detections.nc"),
     log:

@@ -219,6 +219,12 @@ class Budget(Section):
     disk_gigabytes: PositiveNumber = _key(20.0, "datasets of the run")
 
 
+class Scatter(Section):
+    """How a stage that takes long is scattered over several jobs; no result depends on it."""
+
+    minutes: PositiveNumber = _key(5.0, "of processor time in a job, by the run's estimate")
+
+
 class Config(Section):
     """A whole run. Every value has the thesis's as its default."""
 
@@ -240,6 +246,7 @@ class Config(Section):
     grid: Annotated[Grid, BeforeValidator(lambda given: {} if given is None else given)] = Grid()
     cache: Cache = Cache()
     budget: Budget = Budget()
+    scatter: Scatter = Scatter()
 
     def to_dict(self) -> dict[str, Any]:
         """Give the config as plain data that `load_config` reads back to the same bits."""

@@ -24,6 +24,8 @@ from octsim.schema import SCHEMA, upgraded
 
 CHUNK_CACHE = 1_000_000
 """Bytes that are held of each variable that is read or written in chunks."""
+NO_RESULT = ("cache", "scatter")
+"""Sections of the config that no result depends on, and no dataset says."""
 _COMPRESSION = {"zlib": True, "complevel": 4, "shuffle": True}
 
 
@@ -60,7 +62,8 @@ def make(
 def attributes(stage: str, config: Config, title: str, module: str) -> dict[str, Any]:
     """Give what a stage's dataset says of itself: what it is, and all it takes to make it again."""
     data = config.to_dict()
-    del data["cache"]  # no result depends on it
+    for section in NO_RESULT:
+        del data[section]
     return {
         "Conventions": "CF-1.11",
         "title": title,

@@ -13,6 +13,7 @@ from octsim.layout import Coordinate, Layout, points_per_block
 from octsim.light import AccuracyStatus, Light
 from octsim.parts import Part, Stage, Stream
 from octsim.points import Points
+from octsim.scatter import WHOLE, Share
 from octsim.simulation import Brightness, Tracer, meter
 from octsim.threads import each_block
 
@@ -51,7 +52,9 @@ def _brightness(
 
 
 @Stage
-def focus_scan(config: Config, threads: int = 1, points: Points | None = None) -> Stream:
+def focus_scan(
+    config: Config, threads: int = 1, points: Points | None = None, share: Share = WHOLE
+) -> Stream:
     """Scan the focus for one diameter (figure 6).
 
     Rays are counted on the thesis's spiral, whatever the scheme of the intensity.
@@ -71,16 +74,17 @@ def focus_scan(config: Config, threads: int = 1, points: Points | None = None) -
         "focus_scan", config, "Intensity and number of detected rays over the focus, for one "
         "diameter", __name__, own, "focus",
     )  # fmt: skip
-    return Stream(layout, _scanned(layout, whence, threads))
+    return Stream(layout, _scanned(layout, whence, threads, share))
 
 
-def _scanned(layout: Layout, whence: Points, threads: int) -> Iterator[Part]:
+def _scanned(layout: Layout, whence: Points, threads: int, share: Share) -> Iterator[Part]:
     def points_of(block: tuple[Combination, slice]) -> Iterator[tuple[_Scanner, float, float]]:
         at, span = block
         scanner, diameter = _scanner(at.config, whence), at.config.focus_scan.diameter
         return ((scanner, diameter, z) for z in layout.own[at.position]["focus"][1][span].tolist())
 
-    blocks = list(layout.blocks(lambda config: points_per_block(*point_cost(config))))
+    every = layout.blocks(lambda config: points_per_block(*point_cost(config)))
+    blocks = share.among(every)
     for (at, span), found in each_block(lambda p: p[0](p[1], p[2]), blocks, points_of, threads):
         light, rays = zip(*found, strict=True)
         variables = {
@@ -92,7 +96,9 @@ def _scanned(layout: Layout, whence: Points, threads: int) -> Iterator[Part]:
 
 
 @Stage
-def focus_sweep(config: Config, threads: int = 1, points: Points | None = None) -> Stream:
+def focus_sweep(
+    config: Config, threads: int = 1, points: Points | None = None, share: Share = WHOLE
+) -> Stream:
     """Measure the intensity at fractions of the diameter, for the diameters of the focus law.
 
     Returns
@@ -113,10 +119,10 @@ def focus_sweep(config: Config, threads: int = 1, points: Points | None = None) 
         "focus_sweep", config, "Intensity over the focus, for the diameters of the focus law",
         __name__, own, "diameter",
     )  # fmt: skip
-    return Stream(layout, _swept(layout, whence, threads))
+    return Stream(layout, _swept(layout, whence, threads, share))
 
 
-def _swept(layout: Layout, whence: Points, threads: int) -> Iterator[Part]:
+def _swept(layout: Layout, whence: Points, threads: int, share: Share) -> Iterator[Part]:
     def foci(at: Combination, span: slice) -> Any:
         own = layout.own[at.position]
         return np.outer(own["diameter"][1][span], own["fraction"][1])
@@ -139,7 +145,7 @@ def _swept(layout: Layout, whence: Points, threads: int) -> Iterator[Part]:
         fractions = config.focus_law.fraction.num
         return points_per_block(size * fractions, seconds * fractions)
 
-    blocks = list(layout.blocks(most))
+    blocks = share.among(layout.blocks(most))
     dimensions = ("diameter", "fraction")
     for (at, span), found in each_block(measured, blocks, points_of, threads):
         heights = foci(at, span)

@@ -65,7 +65,7 @@ def pour(stream: Stream, store: Store) -> None:
     """
     layout, known = stream.layout, set[str]()
     for part in stream.parts:
-        for name, (own, values, *rest) in _arrays(part.variables):
+        for name, (own, values, *rest) in arrays(part.variables):
             ragged = any(layout.dimension(d) not in layout.sizes for d in own)
             if name not in known:
                 known.add(name)
@@ -82,7 +82,8 @@ def pour(stream: Stream, store: Store) -> None:
             store.put(name, (*part.at.position, *spans), values)
 
 
-def _arrays(variables: Mapping[str, Any]) -> Iterator[tuple[str, tuple[Any, ...]]]:
+def arrays(variables: Mapping[str, Any]) -> Iterator[tuple[str, tuple[Any, ...]]]:
+    """Give a part's variables, each as its dimensions, its array and maybe its attributes."""
     for name, given in variables.items():
         own, values, *rest = given if isinstance(given, tuple) else ((), given)
         yield name, ((own,) if isinstance(own, str) else own, np.asarray(values), *rest)

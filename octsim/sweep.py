@@ -18,6 +18,7 @@ from octsim.layout import Coordinate, Layout, filling, points_per_block
 from octsim.light import AccuracyStatus, Light
 from octsim.parts import Part, Stage, Stream
 from octsim.points import Points
+from octsim.scatter import WHOLE, Share
 from octsim.simulation import Tracer, summer
 from octsim.stored import Stored
 from octsim.threads import each_block
@@ -105,6 +106,7 @@ def detections(
     law: xr.Dataset | None = None,
     threads: int = 1,
     points: Points | None = None,
+    share: Share = WHOLE,
 ) -> Stream:
     """Trace every diameter of the sweep.
 
@@ -128,11 +130,11 @@ def detections(
 
     title = "Rays that reach the detector, for each diameter"
     layout = Layout("detections", config, title, __name__, own, "diameter")
-    return Stream(layout, _detected(layout, law, whence, threads))
+    return Stream(layout, _detected(layout, law, whence, threads, share))
 
 
 def _detected(
-    layout: Layout, law: xr.Dataset | None, whence: Points, threads: int
+    layout: Layout, law: xr.Dataset | None, whence: Points, threads: int, share: Share
 ) -> Iterator[Part]:
     focus = _foci(layout, law)
 
@@ -143,7 +145,8 @@ def _detected(
         diameters = layout.own[at.position]["diameter"][1][span]
         return ((trace_at, d, z) for d, z in zip(diameters.tolist(), heights.tolist(), strict=True))
 
-    blocks = list(layout.blocks(lambda config: points_per_block(*point_cost(config))))
+    every = layout.blocks(lambda config: points_per_block(*point_cost(config)))
+    blocks = share.among(every)
     for (at, span), found in each_block(lambda p: p[0](p[1], p[2]), blocks, points_of, threads):
         variables = _light_variables(found, focus[at.position][span])
         if "outcome" in layout.own[at.position]:

@@ -163,6 +163,7 @@ EDITS: dict[str, tuple[Any, set[str], set[str]]] = {
     "cache.gigabytes": (1, set(), set()),
     "budget.cpu_hours": (2, set(), set()),
     "budget.disk_gigabytes": (21, set(), set()),
+    "scatter.minutes": (1e-5, set(), set()),
     "processing.estimator": ("sinusoid", PROCESSED, PROCESSED),
     "processing.centre": ("mean", PROCESSED, PROCESSED),
     "processing.centre_degree": (2, PROCESSED, PROCESSED),
@@ -413,6 +414,26 @@ def test_no_result_depends_on_the_cache(law: Checkout, tmp_path: Path) -> None:
     assert checkout.results() == law.results()
     assert not (tmp_path / ".octsim").exists()
     assert {one["points_from_cache"] for one in counts(checkout, "tiny").values()} == {0}
+
+
+def test_a_scattered_run_is_the_same_bits_and_goes_on_from_its_shares(
+    grid: Checkout, tmp_path: Path
+) -> None:
+    checkout = Checkout(tmp_path)
+    scattered = merged(GRID, {"scatter": {"minutes": 4.6e-5}, "cache": {"gigabytes": 0}})
+    assert checkout.would_run(scattered) == EVERYTHING | {"share"}
+    share = "results/grid/shares/detections-2-of-2.npz"
+    checkout.run(scattered, "--notemp", share)
+    made = (tmp_path / share).stat()
+    checkout.run(scattered)
+    assert checkout.results() == grid.results()
+    assert counts(checkout, "grid") == counts(grid, "grid")
+    assert made.st_mtime < (tmp_path / "results/grid/detections.nc").stat().st_mtime
+    said = (tmp_path / "results" / "grid" / "logs" / "shares").glob("detections-*")
+    assert sorted(path.name for path in said) == ["detections-1-of-2.log", "detections-2-of-2.log"]
+    assert not list((tmp_path / "results" / "grid" / "shares").glob("*"))
+    # where a stage is cut decides nothing
+    assert checkout.would_run(scattered) == checkout.would_run(GRID) == set()
 
 
 @pytest.mark.parametrize("kind", ["foreign", "future"])

@@ -1,14 +1,12 @@
 """Stage detections: the rays that reach the detector, for each diameter of the sweep."""
 
-from job import job, points
+from job import fitted_law, job, trace
 
-from octsim.datasets import read
-from octsim.netcdf import write_stream
-from octsim.progress import watched
 from octsim.sweep import detections
 
-with job(snakemake) as config, points(snakemake, config) as whence:
-    law_file = snakemake.input.get("focus_law", config)
-    law = read(law_file, "focus_law", config) if law_file else None
-    detected = detections.stream(config, law, snakemake.threads, whence)
-    write_stream(watched(detected), snakemake.output[0])
+with job(snakemake) as config:
+    law, threads = fitted_law(snakemake, config), snakemake.threads
+    trace(
+        snakemake, config,
+        lambda whence, share: detections.stream(config, law, threads, whence, share),
+    )  # fmt: skip

@@ -7,7 +7,7 @@ import sys
 import threading
 import time
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,7 +20,9 @@ from octsim.loading import load_config
 if TYPE_CHECKING:
     import xarray as xr
 
+    from octsim.parts import Stream
     from octsim.points import Points
+    from octsim.scatter import Share
 
 
 def end_with_the_run() -> None:
@@ -66,19 +68,43 @@ def fitted_law(snakemake: Any, config: Config) -> "xr.Dataset | None":
     return read(file, "focus_law", config) if file else None
 
 
-@contextmanager
-def points(snakemake: Any, config: Config) -> Iterator["Points"]:
-    """Give a stage where its light is from, the cache or the tracer; log how much came of each."""
+def trace(snakemake: Any, config: Config, stage: "Callable[[Points, Share], Stream]") -> None:
+    """Make a stage that traces, or a job's share of it, or gather it from its shares.
+
+    What it traced and what the cache had are counted in the log of points.
+    """
     # numba's import is not for jobs that trace nothing
     from octsim.cache import opened
+    from octsim.netcdf import write_stream
     from octsim.points import Points
+    from octsim.progress import watched
+    from octsim.scatter import WHOLE, Share, gathered, notes_of, write_share
 
+    output, shares = Path(snakemake.output[0]), [Path(file) for file in snakemake.input.shares]
+    if shares:
+        write_stream(gathered(stage(Points(), WHOLE), shares), output)
+        _count(snakemake, notes_of(shares))
+        return
+    number, of = map(int, (snakemake.wildcards.get(name, 1) for name in ("number", "of")))
     with opened(Path(config.cache.file).expanduser(), config.cache.gigabytes) as cache:
         whence = Points(cache)
+        stream = watched(stage(whence, Share(number, of)))
         try:
-            yield whence
+            if of > 1:
+                write_share(stream, Share(number, of), output, lambda: counts_of(whence))
+            else:
+                write_stream(stream, output)
         finally:
             whence.keep()
-    counts = {"points_traced": whence.traced, "points_from_cache": whence.from_cache}
+    if of == 1:
+        _count(snakemake, counts_of(whence))
+
+
+def counts_of(points: "Points") -> dict[str, int]:
+    """Say how many points a job traced, and how many the cache had."""
+    return {"points_traced": points.traced, "points_from_cache": points.from_cache}
+
+
+def _count(snakemake: Any, counts: dict[str, int]) -> None:
     with whole(Path(snakemake.log.points)) as file:
         file.write_text(json.dumps(counts) + "\n", encoding="utf-8")
