@@ -9,6 +9,10 @@ from octsim.figures.style import BLUE, ORANGE, label
 # apart in lightness too, and by their markers
 _COLOURS, _MARKERS = (BLUE, ORANGE), "os"
 _MARKS = 12  # along a curve
+# each leaves room for the other's, so that curves that fall together are both seen
+_IDEALS = (0, (5, 5)), (5, (5, 5))
+_PREDICTIONS = (0, (5, 2, 1, 8)), (8, (5, 2, 1, 8))
+_MOST_LETTERS = 36  # of a name in the legend
 
 
 def figure_contrast(slopes: tuple[xr.Dataset, xr.Dataset], names: tuple[str, str]) -> Figure:
@@ -24,18 +28,20 @@ def figure_contrast(slopes: tuple[xr.Dataset, xr.Dataset], names: tuple[str, str
     figure = Figure(figsize=(6.4, 4.8))
     axes = figure.subplots()
     shown = []
-    for one, name, colour, marker in zip(slopes, names, _COLOURS, _MARKERS, strict=True):
+    for number, (one, name) in enumerate(zip(slopes, names, strict=True)):
+        colour, marker = _COLOURS[number], _MARKERS[number]
         diameter, slope, ideal = one["diameter"], one["phase_slope"], one["ideal_phase_slope"]
         predicted = float(one["predicted_phase_slope"])
         every = max(1, diameter.size // _MARKS)
         axes.plot(
             diameter, slope, color=colour, marker=marker, markevery=every, markersize=4,
-            label=name,
+            label=_shortened(name),
         )  # fmt: skip
-        axes.plot(diameter, ideal, color=colour, linestyle="--", label="ideal cos(2ndk)")
+        axes.plot(diameter, ideal, color=colour, linestyle=_IDEALS[number], label="ideal cos(2ndk)")
         axes.axhline(
-            predicted, color=colour, linestyle="-.", label=f"prediction {predicted:.2f} mrad/nm"
-        )
+            predicted, color=colour, linestyle=_PREDICTIONS[number],
+            label=f"prediction {predicted:.2f} mrad/nm",
+        )  # fmt: skip
         shown += [slope.values, ideal.values]
     values = np.concatenate(shown)
     margin = 0.1 * max(float(np.nanmax(values) - np.nanmin(values)), 0.1)
@@ -44,5 +50,10 @@ def figure_contrast(slopes: tuple[xr.Dataset, xr.Dataset], names: tuple[str, str
     axes.set_ylabel(label(slopes[0]["phase_slope"], "phase slope"))
     axes.set_title("Phase slope of two runs")
     # beside each other, column by column
-    figure.legend(loc="outside lower center", ncols=2)
+    figure.legend(loc="outside lower center", ncols=2, handlelength=3)
     return figure
+
+
+def _shortened(name: str) -> str:
+    """Give the end of a name, which tells more of a path than its beginning."""
+    return name if len(name) <= _MOST_LETTERS else "…" + name[1 - _MOST_LETTERS :]
