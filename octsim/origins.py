@@ -89,12 +89,18 @@ def _versions(stage: str, file: Path) -> dict[str, str]:
     except (TypeError, ValueError):
         environment = None
     libraries = environment if isinstance(environment, dict) else {}
-    return {
-        "octsim": str(attributes.get("octsim_version", NOT_RECORDED)),
-        "schema": str(attributes.get("schema_version", 0)),
-        f"{_SOURCES}{stage}": str(attributes.get("source_digest", NOT_RECORDED)),
-        **{str(name): str(version) for name, version in libraries.items()},
+    found = {
+        "octsim": attributes.get("octsim_version", NOT_RECORDED),
+        "schema": attributes.get("schema_version", 0),
+        f"{_SOURCES}{stage}": attributes.get("source_digest", NOT_RECORDED),
+        **libraries,
     }
+    return {_printable(name): _printable(version) for name, version in found.items()}
+
+
+def _printable(text: object) -> str:
+    """Give what a file says as a part of a line, whatever it holds."""
+    return "".join(letter if letter.isprintable() else " " for letter in str(text))
 
 
 def _joined(versions: Mapping[str, str]) -> dict[str, str]:

@@ -13,7 +13,7 @@ from matplotlib.colors import to_rgb
 
 import octsim
 from octsim.command import main
-from octsim.contrast import Contrast, DatasetContrast, VariableContrast
+from octsim.contrast import TOLERANCE, Contrast, DatasetContrast, VariableContrast
 from octsim.contrast_text import lines
 from octsim.datasets import make as dataset_of_stage
 from octsim.datasets import write
@@ -383,14 +383,14 @@ def test_versions_and_libraries_that_differ_are_named(
     def edit(dataset: xr.Dataset) -> xr.Dataset:
         environment = json.loads(dataset.attrs["environment"]) | {"numpy": "1.0"}
         return dataset.assign_attrs(
-            environment=json.dumps(environment), octsim_version="9", source_digest="0" * 12
+            environment=json.dumps(environment), octsim_version="9\n\x1b[2J", source_digest="0" * 12
         )
 
     folder = edited("fourier", edit)
     found = octsim.compare(folder, tiny)
     digest = octsim.read(tiny / "fourier.nc").attrs["source_digest"]
     assert set(found.versions) == {
-        Change("octsim (fourier)", "9", octsim.__version__),
+        Change("octsim (fourier)", "9  [2J", octsim.__version__),
         Change("numpy (fourier)", "1.0", np.__version__),
         Change("sources of fourier", "0" * 12, digest),
     }
@@ -449,7 +449,9 @@ def test_the_exit_status_tells_the_same_from_different_and_from_wrong(
     assert main(["compare", str(tiny), str(tiny)]) == 0
     assert main(["compare", str(tiny), str(other)]) == 1
     assert main(["compare", str(tiny), str(other), "--tolerance", "1e9"]) == 1  # whole numbers
-    assert capsys.readouterr().err == ""
+    said = capsys.readouterr()
+    assert said.err == ""
+    assert f"(beyond {TOLERANCE:g})" in said.out
     notes = tmp_path / "notes.txt"
     notes.write_text("mine")
     wrong: list[tuple[list[str], str]] = [
