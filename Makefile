@@ -1,4 +1,5 @@
 # make results [CONFIG=mine.yaml] [CORES=2]   every dataset and figure of a run
+# make reproduce FILE=results/thesis INTO=DIR  a run or a dataset made anew there, and compared
 # make test                                   the test suite
 # make lint                                   formatting, style and types
 # make docs                                   the parts of docs/ that are made
@@ -25,10 +26,14 @@ except octsim.ConfigError as error:
 endef
 export CHECK
 
-.PHONY: results test lint format docs bench bench-sweeps bench-peers kills lock clean
+.PHONY: results reproduce test lint format docs bench bench-sweeps bench-peers kills lock clean
 results: .venv/run
 	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
 	@$(BIN)/snakemake --cores $(CORES) --configfile "$(CONFIG)"
+
+reproduce: .venv/run
+	@test -n "$(FILE)" -a -n "$(INTO)" || { echo "octsim: make reproduce needs FILE= and INTO=" >&2; exit 2; }
+	@$(BIN)/python workflow/reproduce.py "$(FILE)" "$(INTO)" --cores $(CORES) $(TOLERANCE:%=--tolerance %)
 
 test: .venv/dev
 	$(BIN)/pytest -n 2

@@ -1,5 +1,6 @@
 from .calibrate import calibration as calibration
 from .config import Config as Config
+from .contrast import compare as compare
 from .datasets import read as read
 from .errors import CacheError as CacheError
 from .errors import ConfigError as ConfigError

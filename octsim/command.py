@@ -1,4 +1,4 @@
-"""The command `octsim`: shows and clears the point cache."""
+"""The command `octsim`: shows and clears the point cache, compares runs."""
 
 import argparse
 import sys
@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from octsim.cache import clear, describe
+from octsim.command_compare import register as register_compare
 from octsim.config import Cache
 from octsim.errors import OctsimError
 
@@ -49,6 +50,8 @@ def clear_cache(file: Path) -> str:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; give its exit status."""
     chosen = _parser().parse_args(arguments)
+    if "status" in chosen:
+        return int(chosen.status(chosen))
     do: Callable[[Path], str] = chosen.do
     try:
         print(do(chosen.file.expanduser()))
@@ -72,6 +75,7 @@ def _parser() -> argparse.ArgumentParser:
             "--file", type=Path, default=CACHE, help="of the cache (default: %(default)s)"
         )
         action.set_defaults(do=do)
+    register_compare(commands)
     return parser
 
 

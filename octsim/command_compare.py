@@ -1,0 +1,98 @@
+"""The command `octsim compare`: two runs side by side."""
+
+import argparse
+import math
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from octsim.errors import DatasetError, OctsimError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from octsim.recorded import Recorded
+
+_FORMS = (".png", ".svg")
+_STATUS = (
+    "Exit status: 0 if every number is within the tolerance; 1 if one is beyond it, or not in both "
+    "(another config or version by itself is no difference); 2 if the arguments are wrong or "
+    "something can't be read."
+)
+
+
+def register(commands: Any) -> None:
+    """Add the command to those of `octsim`."""
+    purpose = "say what differs between two runs: config, versions, numbers"
+    parser = commands.add_parser("compare", help=purpose, description=purpose, epilog=_STATUS)
+    for name in ("A", "B"):
+        parser.add_argument(
+            name, type=Path, help="a run's folder as results/thesis, or one dataset's file"
+        )
+    parser.add_argument(
+        "--tolerance", type=tolerance, default=1e-12, metavar="NUMBER",
+        help="largest relative difference of what is the same (default: %(default)s)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--figure", type=_figure, metavar="FILE",
+        help="draw both phase slopes over the diameter, as PNG or SVG",
+    )  # fmt: skip
+    parser.set_defaults(status=status)
+
+
+def tolerance(text: str) -> float:
+    """Read a tolerance: 0 or more."""
+    value = float(text)
+    if not (value >= 0 and math.isfinite(value)):
+        raise argparse.ArgumentTypeError(f"{text} given; give 0 or more")
+    return value
+
+
+def _figure(text: str) -> Path:
+    path = Path(text)
+    if path.suffix not in _FORMS:
+        raise argparse.ArgumentTypeError(f"{text} given; its name ends with .png or .svg")
+    return path
+
+
+def status(chosen: argparse.Namespace) -> int:
+    """Print what differs between two runs; give the exit status."""
+    # xarray and matplotlib are not for those who ask for the cache
+    from octsim.contrast import contrast
+    from octsim.contrast_text import lines
+    from octsim.figures.style import look, save
+    from octsim.recorded import recorded
+
+    try:
+        with recorded(chosen.A) as one, recorded(chosen.B) as other:
+            # first, as it may be refused, and the numbers may take a while
+            if chosen.figure:
+                with look():
+                    save(_drawn(one, other), chosen.figure)
+            found = contrast(one, other, chosen.tolerance)
+    except OctsimError as error:
+        print(f"octsim: {error}", file=sys.stderr)
+        return 2
+    print(*lines(found), sep="\n")
+    if chosen.figure:
+        print(f"figure: {chosen.figure}")
+    return int(found.differs)
+
+
+def _drawn(first: "Recorded", second: "Recorded") -> "Figure":
+    from octsim.datasets import read
+    from octsim.figures.contrast import figure_contrast
+
+    slopes = []
+    for run in (first, second):
+        file = run.datasets.get("phase_slope")
+        if file is None:
+            raise DatasetError(f"{run.name}: no phase_slope.nc, which the figure is drawn from")
+        slope = read(file, "phase_slope", without=["component_phase_slope"])
+        if slope["phase_slope"].ndim != 1:
+            raise DatasetError(f"{file}: of a grid, while the figure is of two runs without one")
+        slopes.append(slope)
+    names = (first.config.run, second.config.run)
+    if names[0] == names[1]:
+        names = (f"{first.name} (A)", f"{second.name} (B)")
+    return figure_contrast((slopes[0], slopes[1]), names)

@@ -1,0 +1,59 @@
+"""Figure 12 of two runs: the phase slope over the diameter, one over the other."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from octsim.figures.style import BLUE, ORANGE, label
+
+# apart in lightness too, and by their markers
+_COLOURS, _MARKERS = (BLUE, ORANGE), "os"
+_MARKS = 12  # along a curve
+# each leaves room for the other's, so that curves that fall together are both seen
+_IDEALS = (0, (5, 5)), (5, (5, 5))
+_PREDICTIONS = (0, (5, 2, 1, 8)), (8, (5, 2, 1, 8))
+_MOST_LETTERS = 36  # of a name in the legend
+
+
+def figure_contrast(slopes: tuple[xr.Dataset, xr.Dataset], names: tuple[str, str]) -> Figure:
+    """Draw two runs' phase slopes with their ideal curves and predictions.
+
+    Parameters
+    ----------
+    slopes : tuple of Dataset
+        Of the stage phase_slope, without a grid.
+    names : tuple of str
+        What the legend calls the runs.
+    """
+    figure = Figure(figsize=(6.4, 4.8))
+    axes = figure.subplots()
+    shown = []
+    for number, (one, name) in enumerate(zip(slopes, names, strict=True)):
+        colour, marker = _COLOURS[number], _MARKERS[number]
+        diameter, slope, ideal = one["diameter"], one["phase_slope"], one["ideal_phase_slope"]
+        predicted = float(one["predicted_phase_slope"])
+        every = max(1, diameter.size // _MARKS)
+        axes.plot(
+            diameter, slope, color=colour, marker=marker, markevery=every, markersize=4,
+            label=_shortened(name),
+        )  # fmt: skip
+        axes.plot(diameter, ideal, color=colour, linestyle=_IDEALS[number], label="ideal cos(2ndk)")
+        axes.axhline(
+            predicted, color=colour, linestyle=_PREDICTIONS[number],
+            label=f"prediction {predicted:.2f} mrad/nm",
+        )  # fmt: skip
+        shown += [slope.values, ideal.values]
+    values = np.concatenate(shown)
+    margin = 0.1 * max(float(np.nanmax(values) - np.nanmin(values)), 0.1)
+    axes.set_ylim(np.nanmin(values) - margin, np.nanmax(values) + margin)
+    axes.set_xlabel(label(slopes[0]["diameter"]))
+    axes.set_ylabel(label(slopes[0]["phase_slope"], "phase slope"))
+    axes.set_title("Phase slope of two runs")
+    # beside each other, column by column
+    figure.legend(loc="outside lower center", ncols=2, handlelength=3)
+    return figure
+
+
+def _shortened(name: str) -> str:
+    """Give the end of a name, which tells more of a path than its beginning."""
+    return name if len(name) <= _MOST_LETTERS else "…" + name[1 - _MOST_LETTERS :]

@@ -1,0 +1,70 @@
+"""What a person names, a run's folder or one dataset's file, as the datasets that it holds."""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+from octsim.config import Config
+from octsim.datasets import opened
+from octsim.errors import DatasetError
+from octsim.reading import keys_behind
+from octsim.runs import run_in
+from octsim.schema import recorded_config
+
+
+class Recorded(NamedTuple):
+    """Datasets of one config."""
+
+    name: str
+    """As it was given."""
+    config: Config
+    """What all of the datasets follow from."""
+    datasets: Mapping[str, Path]
+    """By stage, in alphabetical order."""
+    whole: bool
+    """Whether it is a run, and not one file: then a dataset that it does not hold is missing."""
+
+
+@contextmanager
+def recorded(path: Path) -> Iterator[Recorded]:
+    """Give what stands at a path; an archive is unpacked for as long as it is looked at.
+
+    Raises
+    ------
+    DatasetError
+        If it is no run and no dataset, or one that can't be read.
+    """
+    with located(path) as place:
+        if place.is_dir():
+            run = run_in(place)
+            found = Recorded(str(path), run.config, run.datasets, True)
+        else:
+            with opened(place) as dataset:
+                config = Config.model_validate(recorded_config(dataset.attrs))
+                stage = str(dataset.attrs["stage"])
+            found = Recorded(str(path), config, {stage: place}, False)
+        for stage, file in found.datasets.items():
+            # whatever a file calls itself may become a file's name
+            if not keys_behind(stage, found.config):
+                raise DatasetError(f"{file}: of the stage {stage!r}, which this octsim lacks")
+        yield found
+
+
+@contextmanager
+def located(path: Path) -> Iterator[Path]:
+    """Give the folder that has a run's datasets, or the one dataset's file, that a path means.
+
+    Raises
+    ------
+    DatasetError
+        If there is nothing, or something else.
+    """
+    if not path.exists():
+        raise DatasetError(f"{path}: not there; give a run's folder as results/thesis, or a file")
+    if not path.is_dir() and path.suffix != ".nc":
+        raise DatasetError(
+            f"{path}: neither a run's folder nor a dataset; give one as results/thesis, or a file "
+            "as results/thesis/phase_slope.nc"
+        )
+    yield path
