@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from octsim.errors import DatasetError, OctsimError
+from octsim.reading import stage_axes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,10 +34,13 @@ def register(commands: Any) -> None:
         "--tolerance", type=tolerance, default=1e-12, metavar="NUMBER",
         help="largest relative difference of what is the same (default: %(default)s)",
     )  # fmt: skip
-    parser.add_argument(
+    drawn = parser.add_mutually_exclusive_group()
+    drawn.add_argument(
         "--figure", type=_figure, metavar="FILE",
-        help="draw both phase slopes over the diameter, as PNG or SVG",
+        help="where both phase slopes over the diameter are drawn, PNG or SVG "
+        "(default: compare_<A>_<B>.png here, of runs that have one)",
     )  # fmt: skip
+    drawn.add_argument("--no-figure", action="store_true", help="draw none")
     parser.set_defaults(status=status)
 
 
@@ -65,18 +69,28 @@ def status(chosen: argparse.Namespace) -> int:
 
     try:
         with recorded(chosen.A) as one, recorded(chosen.B) as other:
+            figure = None if chosen.no_figure else chosen.figure or _usual(one, other)
             # first, as it may be refused, and the numbers may take a while
-            if chosen.figure:
+            if figure:
                 with look():
-                    save(_drawn(one, other), chosen.figure)
+                    save(_drawn(one, other), figure)
             found = contrast(one, other, chosen.tolerance)
     except OctsimError as error:
         print(f"octsim: {error}", file=sys.stderr)
         return 2
     print(*lines(found), sep="\n")
-    if chosen.figure:
-        print(f"figure: {chosen.figure}")
+    if figure:
+        print(f"figure: {figure}")
     return int(found.differs)
+
+
+def _usual(first: "Recorded", second: "Recorded") -> Path | None:
+    """Give the file of a figure that was not asked for, if the two runs have one in common."""
+    both = all(
+        "phase_slope" in run.datasets and not stage_axes("phase_slope", run.config)
+        for run in (first, second)
+    )
+    return Path(f"compare_{first.config.run}_{second.config.run}.png") if both else None
 
 
 def _drawn(first: "Recorded", second: "Recorded") -> "Figure":

@@ -413,8 +413,27 @@ def test_a_file_without_an_environment_is_told_in_one_line(
     assert f"numpy {np.__version__}" in change.second
 
 
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)  # where figures go that nobody names
+
+
+def test_the_figure_is_drawn_in_the_folder_that_one_is_in_unless_none_is_wanted(
+    tiny: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = make(tmp_path / "other", {"run": "other", "scene": {"gap": "6 nm"}})
+    before = set(tmp_path.iterdir())
+    assert main(["compare", str(tiny), str(other), "--no-figure"]) == 1
+    assert main(["compare", str(tiny / "spectra.nc"), str(other)]) == 1
+    assert "\nfigure: " not in capsys.readouterr().out
+    assert set(tmp_path.iterdir()) == before
+    assert main(["compare", str(tiny), str(other)]) == 1
+    assert capsys.readouterr().out.splitlines()[-1] == "figure: compare_tiny_other.png"
+    assert (tmp_path / "compare_tiny_other.png").stat().st_size > 10_000
+
+
 @pytest.mark.parametrize("suffix", ["png", "svg"])
-def test_the_figure_is_drawn_when_it_is_asked_for(
+def test_the_figure_is_drawn_where_it_is_asked_for(
     suffix: str, tiny: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file = tmp_path / f"both.{suffix}"
@@ -467,7 +486,13 @@ def test_the_exit_status_tells_the_same_from_different_and_from_wrong(
         assert said.out == ""
         assert message in said.err
         assert said.err.count("\n") == 1
-    for bad in (["--tolerance", "-1"], ["--tolerance", "nan"], ["--figure", "a.pdf"], ["more"]):
+    for bad in (
+        ["--tolerance", "-1"],
+        ["--tolerance", "nan"],
+        ["--figure", "a.pdf"],
+        ["more"],
+        ["--figure", "a.png", "--no-figure"],
+    ):
         with pytest.raises(SystemExit) as caught:
             main(["compare", str(tiny), str(tiny), *bad])
         assert caught.value.code == 2
@@ -479,6 +504,9 @@ def test_the_figure_of_a_grid_is_refused(
 ) -> None:
     folder = make(tmp_path, GRID)
     file = tmp_path / "both.png"
+    assert main(["compare", str(folder), str(folder)]) == 0  # none is drawn that nobody asked for
+    assert not list(tmp_path.glob("*.png"))
+    capsys.readouterr()
     assert main(["compare", str(folder), str(folder), "--figure", str(file)]) == 2
     assert "phase_slope.nc: of a grid" in capsys.readouterr().err
     assert not file.exists()
