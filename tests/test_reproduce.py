@@ -222,6 +222,8 @@ def test_a_file_that_is_none_of_ours_is_one_line_and_nothing_is_made(
     command = [sys.executable, str(ROOT / "workflow" / "reproduce.py"), str(tiny)]
     without = subprocess.run(command, capture_output=True, text=True, check=False)
     assert "the following arguments are required: folder" in said(without)
+    assert "--cores: 0 given; give 1 or more" in said(reproduce(tiny, again, "--cores", "0"))
+    assert files_in(tmp_path) == before
 
 
 def test_a_run_that_fails_is_one_line_with_its_reason_and_its_log(

@@ -47,7 +47,7 @@ def main() -> int:
     parser.add_argument("file", type=Path, help="a run's folder, or one dataset's file")
     parser.add_argument("folder", type=Path, help="where to make it; empty, or not there yet")
     parser.add_argument("--tolerance", type=tolerance, default=TOLERANCE, help="%(default)s")
-    parser.add_argument("--cores", type=int, default=2, help="%(default)s")
+    parser.add_argument("--cores", type=_cores, default=2, help="%(default)s")
     parser.add_argument("--only", nargs="+", metavar="STAGE", help="some of the datasets")
     given = parser.parse_args()
     warnings.simplefilter("ignore", OctsimWarning)  # the workflow says these
@@ -62,6 +62,13 @@ def main() -> int:
         return 2
     print(*lines(result), sep="\n")
     return int(result.differs)
+
+
+def _cores(text: str) -> int:
+    """Read a number of cores: with none, snakemake would wait for ever."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text} given; give 1 or more")
+    return int(text)
 
 
 def _chosen(found: Recorded, only: list[str] | None) -> Recorded:
