@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
+from octsim.archive_config import ArchiveConfig
 from octsim.calibration_config import ActionPotential, Calibration, ExpansionConfig
 from octsim.processing import Processing as Processing
 from octsim.sections import (
@@ -238,6 +239,7 @@ class Config(Section):
     expansion: ExpansionConfig = ExpansionConfig()
     action_potential: ActionPotential = ActionPotential()
     grid: Annotated[Grid, BeforeValidator(lambda given: {} if given is None else given)] = Grid()
+    archive: ArchiveConfig = ArchiveConfig()
     cache: Cache = Cache()
     budget: Budget = Budget()
 

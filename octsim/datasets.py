@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from octsim.archive_config import without_archive
 from octsim.config import Config
 from octsim.environment import environment
 from octsim.errors import DatasetError
@@ -59,14 +60,12 @@ def make(
 
 def attributes(stage: str, config: Config, title: str, module: str) -> dict[str, Any]:
     """Give what a stage's dataset says of itself: what it is, and all it takes to make it again."""
-    data = config.to_dict()
-    del data["cache"]  # no result depends on it
     return {
         "Conventions": "CF-1.11",
         "title": title,
         "stage": stage,
         "schema_version": SCHEMA,
-        "config": json.dumps(data),
+        "config": json.dumps(without_archive(config.to_dict())),
         "octsim_version": version("octsim"),
         "environment": json.dumps(environment()),
         "source_digest": source_digest(module),

@@ -198,6 +198,13 @@ OTHERS: dict[str, Any] = {
     },
     "expansion": {"series": "phases.csv", "diameter": "1.5 um", "rest": 5},
     "action_potential": {"diameter": "1.5 um", "expansion": "2 nm", "photons": 1e9, "seed": 2},
+    "archive": {
+        "title": "Ours",
+        "description": "Of ours.",
+        "creators": [{"name": "Ada Ray"}],
+        "license": "MIT",
+        "date": "2026-01-31",
+    },
 }
 
 
@@ -219,7 +226,7 @@ def test_every_key_is_edited_below() -> None:
         if is_range or (part is not None and not isinstance(part, dict)):
             leaves.add(key)
     ends = {f"{key}.{end}" for key in leaves for end in ("start", "stop", "num")}
-    optional = {"expansion.series"}
+    optional = {"expansion.series", "archive.title", "archive.description", "archive.date"}
     assert leaves - ends == set(EDITS) | keys_in(OTHERS) - optional
 
 
