@@ -1,4 +1,5 @@
 # make results [CONFIG=mine.yaml] [CORES=2]   every dataset and figure of a run
+# make archive [CONFIG=mine.yaml]             the run as one file, for a data repository
 # make test                                   the test suite
 # make lint                                   formatting, style and types
 # make docs                                   the parts of docs/ that are made
@@ -25,10 +26,14 @@ except octsim.ConfigError as error:
 endef
 export CHECK
 
-.PHONY: results test lint format docs bench bench-sweeps bench-peers kills lock clean
+.PHONY: results archive test lint format docs bench bench-sweeps bench-peers kills lock clean
 results: .venv/run
 	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
 	@$(BIN)/snakemake --cores $(CORES) --configfile "$(CONFIG)"
+
+archive: .venv/run
+	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
+	@$(BIN)/snakemake archive --cores $(CORES) --configfile "$(CONFIG)"
 
 test: .venv/dev
 	$(BIN)/pytest -n 2
