@@ -17,7 +17,7 @@ from octsim.config import Config
 from octsim.errors import OctsimError
 from octsim.files import require_folder
 from octsim.estimates import check_budget, expected
-from octsim.gallery import TARGETS, figures_of
+from octsim.gallery import STAGES, TARGETS, figures_of
 from octsim.grid import remarks
 from octsim.loading import load_config
 from octsim.provenance import lock_file, source_digest
@@ -39,17 +39,6 @@ for remark in remarks(run):
     print(f"octsim: warning: {remark}", file=sys.stderr)
 
 os.environ["OCTSIM_RUN"] = str(os.getpid())  # a job ends with the run that started it
-STAGES = (
-    "focus_scan",
-    "focus_sweep",
-    "gaussian_fits",
-    "focus_law",
-    "detections",
-    "spectra",
-    "paths",
-    "fourier",
-    "phase_slope",
-)
 FIGURES = figures_of(run)
 # of targets of a single config; a job of a grid says so at once, and no law is fitted for it
 LAW = f"results/{run.run}/focus_law.nc" if needs_law(run) and not run.grid.varied else []

@@ -1,10 +1,15 @@
-"""Which figures a run has, and which datasets each is drawn from."""
+"""Which datasets and figures a run has, and which datasets each is drawn from."""
 
 from collections.abc import Mapping
 
 from octsim.config import Config
 from octsim.reading import stage_axes
 
+STAGES = (
+    "focus_scan", "focus_sweep", "gaussian_fits", "focus_law", "detections", "spectra", "paths",
+    "fourier", "phase_slope",
+)  # fmt: skip
+"""Datasets of a run, in the order that light meets them."""
 DRAWN_FROM: Mapping[str, tuple[str, ...]] = {
     "figure_1": (),
     "figure_6": ("focus_scan",),

@@ -12,7 +12,7 @@ import yaml
 from octsim.archive_config import without_archive
 from octsim.config import Config
 from octsim.errors import ArchiveError
-from octsim.gallery import CAPTIONS, DRAWN_FROM, TARGETS, figures_of
+from octsim.gallery import CAPTIONS, STAGES, TARGETS, figures_of
 from octsim.names import is_plain
 from octsim.overlays import merge
 from octsim.provenance import LOCK, lock_file
@@ -134,8 +134,7 @@ def items(run: Run, config: Config) -> tuple[list[Item], dict[str, Made]]:
 
 def remarks(run: Run, config: Config) -> list[str]:
     """Say what a reader may miss in an archive of a run, a line each."""
-    stages = dict.fromkeys(stage for drawn in DRAWN_FROM.values() for stage in drawn)
-    missing = [f"{stage}.nc" for stage in (*stages, "detections") if stage not in run.datasets]
+    missing = [f"{stage}.nc" for stage in STAGES if stage not in run.datasets]
     drawn = {file.stem for file in run.figures}
     expected = figures_expected(run, config)
     missing += [f"{FIGURES}/{name}" for name in expected if name not in drawn]

@@ -6,6 +6,8 @@ import shutil
 import sqlite3
 import subprocess
 import sys
+import zipfile
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -332,6 +334,38 @@ def test_every_run_has_its_own_folder_and_the_same_bits(law: Checkout, tmp_path:
     checkout = Checkout(tmp_path)
     checkout.run(TINY, "--cores", "1")
     assert checkout.results() == law.results()
+
+
+def test_an_archive_is_packed_when_something_of_it_has_changed(law: Checkout) -> None:
+    def archived(overlay: dict[str, Any]) -> str:
+        done = law.snakemake(overlay, "--cores", "2", "archive")
+        assert done.returncode == 0, done.stderr
+        return done.stderr
+
+    def would_run(overlay: dict[str, Any]) -> bool:
+        done = law.snakemake(overlay, "--dry-run", "archive")
+        assert done.returncode == 0, done.stderr
+        return "Nothing to be done" not in done.stdout + done.stderr
+
+    file = law.folder / "results" / "tiny" / "tiny.zip"
+    before = law.results()
+    assert "octsim: warning: archive.date: not given" in archived(TINY)
+    with zipfile.ZipFile(file) as zipped:
+        kept = {name: zipped.read(name) for name in zipped.namelist()}
+    for name, data in before.items():
+        assert kept[name.removeprefix("tiny/")] == data
+    first = file.read_bytes()
+    assert not would_run(TINY)
+    assert not would_run(merged(TINY, {"cache": {"gigabytes": 1}}))
+    about = merged(
+        TINY, {"archive": {"creators": [{"name": "Ada Ray"}], "date": date(2026, 1, 31)}}
+    )
+    assert would_run(about)
+    assert "octsim: warning: archive" not in archived(about)
+    assert law.results() == before
+    assert file.read_bytes() != first
+    archived(TINY)
+    assert file.read_bytes() == first
 
 
 GRID: dict[str, Any] = merged(
