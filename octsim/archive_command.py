@@ -32,10 +32,10 @@ def add(commands: Any) -> None:
 
 def archive(given: Namespace) -> str:
     """Pack a run; say what a user should know of it on stderr."""
-    from octsim.archive import pack
     from octsim.config import Config
     from octsim.loading import load_config
     from octsim.overlays import merge, read_overlay
+    from octsim.packing import pack
     from octsim.runs import run_in
 
     folder = given.folder.expanduser()

@@ -16,9 +16,10 @@ from rocrate.rocrate import ROCrate
 from test_runs import make
 
 import octsim
-from octsim.archive import pack, problems, unpack, unpacked, verify
+from octsim.archive import problems, unpack, unpacked, verify
 from octsim.command import main
 from octsim.datasets import write
+from octsim.packing import pack
 from octsim.sums import SUMS, pieces_of
 
 ABOUT: dict[str, Any] = {
@@ -204,7 +205,7 @@ def test_a_file_that_changes_while_it_is_packed_is_said_and_the_old_archive_stay
         yield data[::-1] if path.name == "spectra.nc" and path in read else data
         read.add(path)
 
-    monkeypatch.setattr("octsim.archive.pieces_of", changing)
+    monkeypatch.setattr("octsim.packing.pieces_of", changing)
     with pytest.raises(octsim.ArchiveError, match=r"spectra\.nc: changed while it was packed"):
         pack(folder, config_of(folder))
     assert file.read_bytes() == before

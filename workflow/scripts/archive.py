@@ -6,7 +6,7 @@ from pathlib import Path
 
 from job import job
 
-from octsim.archive import pack
+from octsim.packing import pack
 
 with job(snakemake) as config:
     file = Path(snakemake.output[0])
