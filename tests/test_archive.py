@@ -83,6 +83,16 @@ def test_an_archive_holds_the_run_and_what_explains_it(folder: Path) -> None:
     assert left_out == f"{folder}: left out, as no figures of this run: mine.png"
 
 
+def test_a_package_that_is_no_checkout_has_no_lock_and_says_so(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("octsim.inventory.lock_file", lambda: None)
+    packed = pack(folder, config_of(folder))
+    assert "requirements.lock" not in names_in(packed.file)
+    assert "goes without requirements.lock, which stands in a checkout" in packed.remarks[-1]
+    assert problems(packed.file) == []
+
+
 def test_the_same_run_is_the_same_bytes_wherever_and_whenever(made: Path, tmp_path: Path) -> None:
     found = []
     for number, (zone, mask) in enumerate([("UTC", 0o022), ("Pacific/Auckland", 0o077)]):
