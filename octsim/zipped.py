@@ -145,9 +145,16 @@ def contents(stream: IO[bytes]) -> Contents:
 
 
 def extract(stream: IO[bytes], folder: Path) -> None:
-    """Write the members of a zip that `contents` has found canonical into an empty folder."""
+    """Write the members of a zip that `contents` has found canonical into an empty folder.
+
+    Raises
+    ------
+    ArchiveError
+        If it is not safe, as one is not that was exchanged since.
+    """
+    infos = listed(stream)
     with zipfile.ZipFile(stream) as archive:
-        for info in archive.infolist():
+        for info in infos:
             file = folder / info.filename
             file.parent.mkdir(parents=True, exist_ok=True)
             with archive.open(info) as packed, file.open("xb") as out:

@@ -272,3 +272,10 @@ def test_a_plain_name_is_below_its_folder_on_every_system(name: str) -> None:
 def test_sums_are_read_as_they_are_written(files: dict[str, bytes]) -> None:
     digests = {name: digest([data]) for name, data in files.items() if is_plain(name)}
     assert parsed(written(digests)) == digests
+
+
+def test_what_is_exchanged_after_it_was_verified_is_not_written(tmp_path: Path) -> None:
+    (tmp_path / "out").mkdir()
+    with pytest.raises(ArchiveError, match="not a plain path"):
+        zipped.extract(io.BytesIO(packed({"../evil": b"x"})), tmp_path / "out")
+    assert [one.name for one in tmp_path.rglob("*")] == ["out"]
