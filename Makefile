@@ -1,5 +1,6 @@
 # make results [CONFIG=mine.yaml] [CORES=2]   every dataset and figure of a run
-# make reproduce FILE=results/thesis INTO=DIR  a run or a dataset made anew there, and compared
+# make archive [CONFIG=mine.yaml]             the run as one file, for a data repository
+# make reproduce FILE=thesis.zip INTO=folder  an archive, a run or a dataset made anew there, and compared
 # make test                                   the test suite
 # make lint                                   formatting, style and types
 # make docs                                   the parts of docs/ that are made
@@ -26,10 +27,14 @@ except octsim.ConfigError as error:
 endef
 export CHECK
 
-.PHONY: results reproduce test lint format docs bench bench-sweeps bench-peers kills lock clean
+.PHONY: results archive reproduce test lint format docs bench bench-sweeps bench-peers kills lock clean
 results: .venv/run
 	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
 	@$(BIN)/snakemake --cores $(CORES) --configfile "$(CONFIG)"
+
+archive: .venv/run
+	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
+	@$(BIN)/snakemake archive --cores $(CORES) --configfile "$(CONFIG)"
 
 reproduce: .venv/run
 	@test -n "$(FILE)" -a -n "$(INTO)" || { echo "octsim: make reproduce needs FILE= and INTO=" >&2; exit 2; }

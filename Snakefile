@@ -17,10 +17,10 @@ from octsim.config import Config
 from octsim.errors import OctsimError
 from octsim.files import require_folder
 from octsim.estimates import check_budget, expected
-from octsim.gallery import figures_of
+from octsim.gallery import STAGES, TARGETS, figures_of
 from octsim.grid import remarks
 from octsim.loading import load_config
-from octsim.provenance import source_digest
+from octsim.provenance import lock_file, source_digest
 from octsim.reading import keys_read, needs_law, parts_of
 from octsim.scatter import SCATTERED, shares_of
 
@@ -40,17 +40,6 @@ for remark in remarks(run):
     print(f"octsim: warning: {remark}", file=sys.stderr)
 
 os.environ["OCTSIM_RUN"] = str(os.getpid())  # a job ends with the run that started it
-STAGES = (
-    "focus_scan",
-    "focus_sweep",
-    "gaussian_fits",
-    "focus_law",
-    "detections",
-    "spectra",
-    "paths",
-    "fourier",
-    "phase_slope",
-)
 FIGURES = figures_of(run)
 SHARES = shares_of(run)  # a stage that takes long is scattered over several jobs
 LAW_SWEPT = f"results/{run.run}/focus_law.nc" if needs_law(run) else []
@@ -59,6 +48,8 @@ LAW = LAW_SWEPT if not run.grid.varied else []
 # a measured series is a file of the user's; one that is not there is said by the job
 SERIES = [file for file in [run.expansion.series] if file and Path(file).is_file()]
 LOCK = FileLock(f"results/{run.run}/.lock")  # held from the start of a run to its end
+# of other targets, what was asked for once: an archive has it too, brought up to date
+BESIDE = [file for file in (f"results/{run.run}/{t}.nc" for t in TARGETS) if Path(file).is_file()]
 SCRIPTS = Path(workflow.basedir) / "workflow" / "scripts"
 BENCHMARKS = Path(workflow.basedir) / "benchmarks"
 
@@ -441,3 +432,25 @@ rule action_potential:
         "Simulate an action potential and recover it"
     script:
         "workflow/scripts/action_potential.py"
+
+
+rule archive:
+    input:
+        rules.all.input,
+        BESIDE,
+        lock_file() or [],
+        SERIES if f"results/{run.run}/expansion.nc" in BESIDE else [],
+    output:
+        update(expand("results/{run}/{run}.zip", run=run.run)),
+    log:
+        f"results/{run.run}/logs/archive.log",
+    benchmark:
+        f"results/{run.run}/benchmarks/archive.tsv"
+    params:
+        # it holds the whole config but for what no result depends on, and maybe a day
+        made_from=made_from("archive", "archive", *run.to_record()),
+        day=os.environ.get("SOURCE_DATE_EPOCH", ""),
+    message:
+        "Pack the run for a data repository"
+    script:
+        "workflow/scripts/archive.py"

@@ -2,6 +2,7 @@ from .calibrate import calibration as calibration
 from .config import Config as Config
 from .contrast import compare as compare
 from .datasets import read as read
+from .errors import ArchiveError as ArchiveError
 from .errors import CacheError as CacheError
 from .errors import ConfigError as ConfigError
 from .errors import DatasetError as DatasetError

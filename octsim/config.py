@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
+from octsim.archive_config import ArchiveConfig
 from octsim.calibration_config import ActionPotential, Calibration, ExpansionConfig
 from octsim.processing import Processing as Processing
 from octsim.sections import (
@@ -225,6 +226,9 @@ class Scatter(Section):
     minutes: PositiveNumber = _key(5.0, "of processor time in a job, by the run's estimate")
 
 
+_NO_RESULT = ("archive", "cache", "scatter")
+
+
 class Config(Section):
     """A whole run. Every value has the thesis's as its default."""
 
@@ -244,6 +248,7 @@ class Config(Section):
     expansion: ExpansionConfig = ExpansionConfig()
     action_potential: ActionPotential = ActionPotential()
     grid: Annotated[Grid, BeforeValidator(lambda given: {} if given is None else given)] = Grid()
+    archive: ArchiveConfig = ArchiveConfig()
     cache: Cache = Cache()
     budget: Budget = Budget()
     scatter: Scatter = Scatter()
@@ -251,3 +256,7 @@ class Config(Section):
     def to_dict(self) -> dict[str, Any]:
         """Give the config as plain data that `load_config` reads back to the same bits."""
         return self.model_dump(mode="json")
+
+    def to_record(self) -> dict[str, Any]:
+        """Give what results can depend on, as plain data: what their datasets record."""
+        return {k: part for k, part in self.to_dict().items() if k not in _NO_RESULT}

@@ -24,8 +24,6 @@ from octsim.schema import SCHEMA, upgraded
 
 CHUNK_CACHE = 1_000_000
 """Bytes that are held of each variable that is read or written in chunks."""
-NO_RESULT = ("cache", "scatter")
-"""Sections of the config that no result depends on, and no dataset says."""
 _COMPRESSION = {"zlib": True, "complevel": 4, "shuffle": True}
 
 
@@ -61,15 +59,12 @@ def make(
 
 def attributes(stage: str, config: Config, title: str, module: str) -> dict[str, Any]:
     """Give what a stage's dataset says of itself: what it is, and all it takes to make it again."""
-    data = config.to_dict()
-    for section in NO_RESULT:
-        del data[section]
     return {
         "Conventions": "CF-1.11",
         "title": title,
         "stage": stage,
         "schema_version": SCHEMA,
-        "config": json.dumps(data),
+        "config": json.dumps(config.to_record()),
         "octsim_version": version("octsim"),
         "environment": json.dumps(environment()),
         "source_digest": source_digest(module),

@@ -23,3 +23,7 @@ class FileError(OctsimError):
 
 class CacheError(OctsimError):
     """A file is no point cache, or not one that this octsim reads, or can't be cleared."""
+
+
+class ArchiveError(OctsimError):
+    """A run can't be packed, or an archive is not what was packed; a line for each problem."""

@@ -16,15 +16,9 @@ from octsim.overlays import merge, preset
 from octsim.problems import known_keys
 
 FIXED = (
-    "run",
-    "calibration",
-    "expansion",
-    "action_potential",
-    "grid",
-    "cache",
-    "budget",
+    "run", "calibration", "expansion", "action_potential", "grid", "archive", "cache", "budget",
     "scatter",
-)
+)  # fmt: skip
 """Sections that a run has once: what no stage over the grid depends on."""
 _PRESET = "tracing.preset"
 _NUMBERS = re.compile(r"[-+]?[0-9][0-9.e+-]*")

@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 import xarray as xr
 
 from octsim.config import Config
-from octsim.datasets import NO_RESULT
 from octsim.grid import as_text
 
 NOT_RECORDED = "not recorded"
@@ -27,11 +26,7 @@ def config_changes(first: Config, second: Config) -> tuple[Change, ...]:
 
     Ranges are told apart by their ends and their number; lengths have their unit.
     """
-    one, other = (
-        {key: value for key, value in config.to_dict().items() if key not in NO_RESULT}
-        for config in (first, second)
-    )
-    return tuple(_changes(one, other))
+    return tuple(_changes(first.to_record(), second.to_record()))
 
 
 def _changes(one: Mapping[str, Any], other: Mapping[str, Any], above: str = "") -> Iterator[Change]:

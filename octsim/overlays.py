@@ -51,6 +51,8 @@ def read_overlay(path: Path) -> Mapping[str, Any]:
         raise ConfigError(f"{path}{place}: not as YAML should be: {problem}") from None
     except yaml.YAMLError as error:
         raise ConfigError(f"{path}: not YAML: {' '.join(str(error).split())}") from None
+    except ValueError as error:
+        raise ConfigError(f"{path}: holds a date that there is not: {error}") from None
     if content is None:
         return {}
     if not isinstance(content, Mapping):

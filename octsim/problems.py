@@ -8,6 +8,7 @@ from typing import Any
 from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
+from octsim.archive_config import Creator
 from octsim.config import Config, FocusLine
 
 
@@ -21,6 +22,7 @@ def known_keys(model: type[BaseModel] | BaseModel = Config, prefix: str = "") ->
             yield from known_keys(value, f"{prefix}{name}.")
     if isinstance(model, Config):
         yield from (f"sweep.focus.{name}" for name in FocusLine.model_fields)
+        yield from (f"archive.creators.{name}" for name in Creator.model_fields)
 
 
 def nearest_key(key: str) -> str:
@@ -46,9 +48,11 @@ def explain(error: ErrorDetails) -> str:
     if place[:2] in _OF_TWO_KINDS:
         del place[2:3]  # which of the two it was read as
     path = ".".join(place)
+    entry = ".".join(part for part in place if not part.isdigit())  # of a list, any of its entries
     listed = isinstance(error["input"], list | tuple) and error["type"] != "model_type"
+    varies = listed and place[0] != "archive"  # a run has one
     key = next((name for name in (place[-1], path) if name in set(known_keys())), None)
-    if listed and key and key != "processing.window":
+    if varies and key and key != "processing.window":
         return (
             f"{path}: {error['input']!r} given; several values of one key stand in the grid: "
             f"write grid: {{{key}: [...]}}"
@@ -56,7 +60,7 @@ def explain(error: ErrorDetails) -> str:
     if "." in place[-1] and error["type"] == "extra_forbidden":
         return f"{path}: unknown key; keys nest, so write {place[-1].replace('.', ': {')}: ...}}"
     if error["type"] == "extra_forbidden":
-        return f"{path}: unknown key; the nearest known one is {nearest_key(path)}"
+        return f"{path}: unknown key; the nearest known one is {nearest_key(entry)}"
     if error["type"] == "missing":
         return f"{path}: missing; it has no default, so give it a value"
     message = error["msg"].removeprefix("Value error, ").replace("Input should", "it should")

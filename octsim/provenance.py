@@ -6,6 +6,15 @@ from functools import cache
 from pathlib import Path
 
 _PACKAGE = Path(__file__).parent
+LOCK = "requirements.lock"
+"""Pinned versions of what octsim needs, in a checkout."""
+
+
+def lock_file() -> Path | None:
+    """Give the pinned versions, where the package stands in a checkout of octsim."""
+    checkout = _PACKAGE.parent
+    file = checkout / LOCK
+    return file if file.is_file() and (checkout / "pyproject.toml").is_file() else None
 
 
 def source_digest(source: str | Path) -> str:

@@ -1,10 +1,11 @@
-"""What a person names, a run's folder or one dataset's file, as the datasets that it holds."""
+"""What a person names, a run's folder, its archive or a dataset, as the datasets that it holds."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
+from octsim.archive import unpacked
 from octsim.config import Config
 from octsim.datasets import opened
 from octsim.errors import DatasetError
@@ -32,7 +33,7 @@ def recorded(path: Path) -> Iterator[Recorded]:
 
     Raises
     ------
-    DatasetError
+    ArchiveError, DatasetError
         If it is no run and no dataset, or one that can't be read.
     """
     with located(path) as place:
@@ -57,14 +58,20 @@ def located(path: Path) -> Iterator[Path]:
 
     Raises
     ------
+    ArchiveError
+        If an archive is not as it was packed.
     DatasetError
         If there is nothing, or something else.
     """
     if not path.exists():
         raise DatasetError(f"{path}: not there; give a run's folder as results/thesis, or a file")
-    if not path.is_dir() and path.suffix != ".nc":
+    if path.suffix == ".zip" and path.is_file():
+        with unpacked(path) as folder:
+            yield folder
+    elif path.is_dir() or path.suffix == ".nc":
+        yield path
+    else:
         raise DatasetError(
-            f"{path}: neither a run's folder nor a dataset; give one as results/thesis, or a file "
-            "as results/thesis/phase_slope.nc"
+            f"{path}: neither a run's folder, nor an archive, nor a dataset; give one as "
+            "results/thesis, results/thesis/thesis.zip or results/thesis/phase_slope.nc"
         )
-    yield path

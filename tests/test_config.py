@@ -60,6 +60,20 @@ BAD: list[tuple[dict[Any, Any], str]] = [
     ({"calibration": {"step": "1 um"}}, "calibration.step: '1 um' given; it should be less than or equal to 0.01 um"),
     ({"calibration": {"tolerances": {"index": 1}}}, "calibration.tolerances.index: unknown key"),
     ({"expansion": {"series": 5}}, "expansion.series: 5 given"),
+    # what an archive says of itself
+    ({"archive": {"date": "2026-1-1"}}, "archive.date: '2026-1-1' given; it should be a day as 2026-01-31"),
+    ({"archive": {"date": "2026-02-30"}}, "archive.date: '2026-02-30' given; it should be a day"),
+    ({"archive": {"date": 20260101}}, "archive.date: 20260101 given; it should be a day"),
+    ({"archive": {"license": "mine"}}, "archive.license: 'mine' given; it should be one SPDX id"),
+    ({"archive": {"license": "MIT OR CC0-1.0"}}, "it should be one SPDX id"),
+    ({"archive": {"license": "LicenseRef-mine"}}, "it should be one SPDX id"),
+    ({"archive": {"creators": "Ada Ray"}}, "archive.creators: 'Ada Ray' given; it should be a list"),
+    ({"archive": {"creators": [{"orcid": None}]}}, "archive.creators.0.name: missing"),
+    ({"archive": {"creators": [{"name": "A", "orchid": "x"}]}}, "archive.creators.0.orchid: unknown key; the nearest known one is archive.creators.orcid"),
+    ({"archive": {"creators": [{"name": "A", "orcid": "0000-0002-1825-009"}]}}, "archive.creators.0.orcid: '0000-0002-1825-009' given; it should be an ORCID iD"),
+    ({"archive": {"creators": [{"name": "A", "orcid": "0000-0002-1825-0079"}]}}, "its last digit does not fit the others"),
+    ({"archive": {"title": "a\nb"}}, "archive.title: 'a\\nb' given; it should be one line of text"),
+    ({"archive": {"title": ["a", "b"]}}, "archive.title: ['a', 'b'] given; it should be a valid string"),
     # ranges and what is impossible
     ({"calibration": {"diameters": {"num": 3}}}, "it should be greater than or equal to 8"),
     ({"tracing": {"rays": 0}}, "tracing.rays: 0 given; it should be greater than or equal to 1"),
@@ -104,6 +118,7 @@ def test_every_problem_gets_its_line() -> None:
     [
         ("a: : b", r", line 1, column 4: not as YAML should be: "),
         ("- 1", "holds a list, not keys with values"),
+        ("archive: {date: 2026-13-01}", "holds a date that there is not"),
         ("scene: {gap: 1 nm}\nscene: {gap: 2 nm}", "the key 'scene' stands twice"),
     ],
 )
@@ -184,6 +199,19 @@ def test_equal_lengths_in_different_units_are_the_same_number() -> None:
     assert parse_length("2 µm") == parse_length("2 μm") == parse_length("2um") == 2.0
 
 
+def test_what_an_archive_says_is_written_as_the_standards_do(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text(
+        "archive:\n  date: 2026-01-31\n  license: cc0-1.0\n  description: >\n    Two\n    lines.\n"
+        "  creators: [{name: Josiah, orcid: https://orcid.org/0000-0002-1694-233X}]\n"
+    )
+    config = load_config(file)
+    said = config.archive
+    assert (said.date, said.license, said.description) == ("2026-01-31", "CC0-1.0", "Two lines.")
+    assert said.creators[0].orcid == "0000-0002-1694-233X"
+    assert load_config(config.to_dict()) == config
+
+
 def test_a_config_is_frozen() -> None:
     with pytest.raises(ValueError, match="frozen"):
         load_config().scene.gap = 1.0  # type: ignore[misc]
@@ -231,6 +259,7 @@ def test_the_default_config_file_is_the_defaults_and_names_every_key() -> None:
         )
 
     optional = {"sweep.focus.slope", "sweep.focus.intercept", "tracing.preset"}
+    optional |= {f"archive.creators.{name}" for name in ("name", "orcid", "affiliation")}
     assert keys(written) == set(known_keys()) - optional
 
 

@@ -475,7 +475,7 @@ def test_the_exit_status_tells_the_same_from_different_and_from_wrong(
     notes.write_text("mine")
     wrong: list[tuple[list[str], str]] = [
         ([str(tiny), str(tmp_path / "none")], "none: not there; give a run's folder"),
-        ([str(tiny), str(notes)], "notes.txt: neither a run's folder nor a dataset"),
+        ([str(tiny), str(notes)], "notes.txt: neither a run's folder, nor an archive, nor a"),
         ([str(tmp_path), str(tiny)], "no datasets"),
         ([str(tiny / "paths.nc"), str(tiny), "--figure", str(tmp_path / "a.png")],
          "no phase_slope.nc, which the figure is drawn from"),

@@ -15,6 +15,8 @@ import xarray as xr
 
 import octsim
 from octsim.datasets import write
+from octsim.packing import pack
+from octsim.runs import run_in
 from octsim.schema import SCHEMA
 
 ROOT = Path(__file__).parent.parent
@@ -97,6 +99,25 @@ def test_a_run_is_made_anew_to_the_same_bits(tiny: Path, tmp_path: Path) -> None
     assert "  detections.nc" not in done.stdout
     assert "versions, A -> B\n  none" in done.stdout
     assert "config, A -> B\n  none" in done.stdout
+
+
+def test_an_archive_is_made_anew_and_compared_with_what_was_made(
+    tiny: Path, tmp_path: Path
+) -> None:
+    archive = tmp_path / "tiny.zip"
+    pack(tiny, run_in(tiny).config, archive)
+    done = reproduce(archive, tmp_path / "again", "--tolerance", "0", "--cores", "1")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.startswith(f"A: {archive} (run tiny)\n")
+    assert done.stdout.splitlines()[-1] == "the same: every number within 0"
+    found = octsim.compare(archive, tmp_path / "again" / "results" / "tiny", 0)
+    assert [dataset.stage for dataset in found.datasets] == ["focus_scan", "phase_slope", "spectra"]
+    assert not found.differs
+    body = bytearray(archive.read_bytes())
+    body[len(body) // 2] ^= 1
+    archive.write_bytes(body)
+    assert "tiny.zip: " in said(reproduce(archive, tmp_path / "never"))
+    assert not (tmp_path / "never").exists()
 
 
 def test_one_file_and_chosen_stages_are_made_anew_alone(tiny: Path, tmp_path: Path) -> None:

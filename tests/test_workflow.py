@@ -6,6 +6,8 @@ import shutil
 import sqlite3
 import subprocess
 import sys
+import zipfile
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -199,6 +201,13 @@ OTHERS: dict[str, Any] = {
     },
     "expansion": {"series": "phases.csv", "diameter": "1.5 um", "rest": 5},
     "action_potential": {"diameter": "1.5 um", "expansion": "2 nm", "photons": 1e9, "seed": 2},
+    "archive": {
+        "title": "Ours",
+        "description": "Of ours.",
+        "creators": [{"name": "Ada Ray"}],
+        "license": "MIT",
+        "date": "2026-01-31",
+    },
 }
 
 
@@ -220,7 +229,7 @@ def test_every_key_is_edited_below() -> None:
         if is_range or (part is not None and not isinstance(part, dict)):
             leaves.add(key)
     ends = {f"{key}.{end}" for key in leaves for end in ("start", "stop", "num")}
-    optional = {"expansion.series"}
+    optional = {"expansion.series", "archive.title", "archive.description", "archive.date"}
     assert leaves - ends == set(EDITS) | keys_in(OTHERS) - optional
 
 
@@ -326,6 +335,38 @@ def test_every_run_has_its_own_folder_and_the_same_bits(law: Checkout, tmp_path:
     checkout = Checkout(tmp_path)
     checkout.run(TINY, "--cores", "1")
     assert checkout.results() == law.results()
+
+
+def test_an_archive_is_packed_when_something_of_it_has_changed(law: Checkout) -> None:
+    def archived(overlay: dict[str, Any]) -> str:
+        done = law.snakemake(overlay, "--cores", "2", "archive")
+        assert done.returncode == 0, done.stderr
+        return done.stderr
+
+    def would_run(overlay: dict[str, Any]) -> bool:
+        done = law.snakemake(overlay, "--dry-run", "archive")
+        assert done.returncode == 0, done.stderr
+        return "Nothing to be done" not in done.stdout + done.stderr
+
+    file = law.folder / "results" / "tiny" / "tiny.zip"
+    before = law.results()
+    assert "octsim: warning: archive.date: not given" in archived(TINY)
+    with zipfile.ZipFile(file) as zipped:
+        kept = {name: zipped.read(name) for name in zipped.namelist()}
+    for name, data in before.items():
+        assert kept[name.removeprefix("tiny/")] == data
+    first = file.read_bytes()
+    assert not would_run(TINY)
+    assert not would_run(merged(TINY, {"cache": {"gigabytes": 1}}))
+    about = merged(
+        TINY, {"archive": {"creators": [{"name": "Ada Ray"}], "date": date(2026, 1, 31)}}
+    )
+    assert would_run(about)
+    assert "octsim: warning: archive" not in archived(about)
+    assert law.results() == before
+    assert file.read_bytes() != first
+    archived(TINY)
+    assert file.read_bytes() == first
 
 
 GRID: dict[str, Any] = merged(

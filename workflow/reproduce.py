@@ -1,6 +1,6 @@
 """Make anew what a run, an archive or one dataset records, in another folder, and compare.
 
-    .venv/bin/python workflow/reproduce.py results/thesis/phase_slope.nc /some/folder
+    .venv/bin/python workflow/reproduce.py results/thesis/thesis.zip /some/folder
 
 What is recorded is read as data alone: its config is checked as a user's is, the commands are this
 checkout's, and all that is written stands in the folder.
@@ -15,7 +15,7 @@ import warnings
 from pathlib import Path
 from typing import Any, NoReturn
 
-from octsim.command_compare import tolerance
+from octsim.compare_command import tolerance
 from octsim.config import Cache
 from octsim.contrast import TOLERANCE, contrast
 from octsim.contrast_text import lines
@@ -40,11 +40,11 @@ class _Parser(argparse.ArgumentParser):
 def main() -> int:
     """Reproduce what the arguments name; give the exit status."""
     parser = _Parser(
-        description="Make anew what a run or a dataset records, in another folder, and compare.",
+        description="Make anew what a run, an archive or a dataset records, and compare.",
         epilog="Exit status: 0 if every number is within the tolerance, 1 if one is not, 2 if "
         "nothing could be compared: wrong arguments, a file that can't be read, a failed run.",
     )
-    parser.add_argument("file", type=Path, help="a run's folder, or one dataset's file")
+    parser.add_argument("file", type=Path, help="a run's folder, its archive, or a dataset")
     parser.add_argument("folder", type=Path, help="where to make it; empty, or not there yet")
     parser.add_argument("--tolerance", type=tolerance, default=TOLERANCE, help="%(default)s")
     parser.add_argument("--cores", type=_cores, default=2, help="%(default)s")
@@ -123,14 +123,20 @@ def _harmless(then: Recorded, inputs: Path | None) -> tuple[dict[str, Any], Path
     named, config["expansion"]["series"] = config["expansion"]["series"], None
     if "expansion" not in then.datasets or named is None:
         return config, None
-    series = inputs / Path(named).name if inputs else None
-    if series is None or not series.is_file():
+    series = _series(named, inputs) if inputs else None
+    if series is None:
         raise DatasetError(
             f"{then.datasets['expansion']}: its measured series {named} is not recorded beside it; "
             "give an archive of the run, or leave expansion out by --only"
         )
     config["expansion"]["series"] = f"{INPUTS}/{series.name}"
     return config, series
+
+
+def _series(named: str, inputs: Path) -> Path | None:
+    """Give the archived series; one whose name is none for an archive has another there."""
+    places = (inputs / Path(named).name, *sorted(inputs.glob("series.*")))
+    return next((place for place in places if place.is_file() and not place.is_symlink()), None)
 
 
 def _said(log: Path) -> str:

@@ -1,12 +1,11 @@
-"""The command `octsim compare`: two runs side by side."""
+"""`octsim compare`: two runs side by side."""
 
 import argparse
 import math
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from octsim.errors import DatasetError, OctsimError
+from octsim.errors import DatasetError
 from octsim.reading import stage_axes
 
 if TYPE_CHECKING:
@@ -22,13 +21,13 @@ _STATUS = (
 )
 
 
-def register(commands: Any) -> None:
-    """Add the command to those of `octsim`."""
+def add(commands: Any) -> None:
+    """Add the command to a parser's others."""
     purpose = "say what differs between two runs: config, versions, numbers"
     parser = commands.add_parser("compare", help=purpose, description=purpose, epilog=_STATUS)
     for name in ("A", "B"):
         parser.add_argument(
-            name, type=Path, help="a run's folder as results/thesis, or one dataset's file"
+            name, type=Path, help="a run's folder as results/thesis, its archive, or a dataset"
         )
     parser.add_argument(
         "--tolerance", type=tolerance, default=1e-12, metavar="NUMBER",
@@ -41,7 +40,7 @@ def register(commands: Any) -> None:
         "(default: compare_<A>_<B>.png here, of runs that have one)",
     )  # fmt: skip
     drawn.add_argument("--no-figure", action="store_true", help="draw none")
-    parser.set_defaults(status=status)
+    parser.set_defaults(do=compare, failed=2)
 
 
 def tolerance(text: str) -> float:
@@ -59,7 +58,7 @@ def _figure(text: str) -> Path:
     return path
 
 
-def status(chosen: argparse.Namespace) -> int:
+def compare(given: argparse.Namespace) -> int:
     """Print what differs between two runs; give the exit status."""
     # xarray and matplotlib are not for those who ask for the cache
     from octsim.contrast import contrast
@@ -67,17 +66,13 @@ def status(chosen: argparse.Namespace) -> int:
     from octsim.figures.style import look, save
     from octsim.recorded import recorded
 
-    try:
-        with recorded(chosen.A) as one, recorded(chosen.B) as other:
-            figure = None if chosen.no_figure else chosen.figure or _usual(one, other)
-            # first, as it may be refused, and the numbers may take a while
-            if figure:
-                with look():
-                    save(_drawn(one, other), figure)
-            found = contrast(one, other, chosen.tolerance)
-    except OctsimError as error:
-        print(f"octsim: {error}", file=sys.stderr)
-        return 2
+    with recorded(given.A) as one, recorded(given.B) as other:
+        figure = None if given.no_figure else given.figure or _usual(one, other)
+        # first, as it may be refused, and the numbers may take a while
+        if figure:
+            with look():
+                save(_drawn(one, other), figure)
+        found = contrast(one, other, given.tolerance)
     print(*lines(found), sep="\n")
     if figure:
         print(f"figure: {figure}")

@@ -1,0 +1,69 @@
+"""`octsim archive`, `octsim verify` and `octsim unpack`: a run as one file, checked to the bit.
+
+What does the work is imported when it is asked for: the other commands need no dataset's library.
+"""
+
+import sys
+from argparse import Namespace
+from pathlib import Path
+from typing import Any
+
+
+def add(commands: Any) -> None:
+    """Add the commands to a parser's others."""
+    purpose = "pack a run for a data repository"
+    parser = commands.add_parser("archive", help=purpose, description=purpose)
+    parser.add_argument("folder", type=Path, help="of the run, as results/thesis")
+    parser.add_argument("--file", type=Path, help="to write (default: <folder>/<run>.zip)")
+    parser.add_argument(
+        "--config", type=Path, help="whose section archive has title, creators, license and date"
+    )
+    parser.set_defaults(do=archive, failed=1)
+    purpose = "check that an archive is as it was packed, to the last bit"
+    parser = commands.add_parser("verify", help=purpose, description=purpose)
+    parser.add_argument("path", type=Path, help="a zip, or the folder that it was unpacked to")
+    parser.set_defaults(do=verified, failed=1)
+    purpose = "verify an archive, then unpack it"
+    parser = commands.add_parser("unpack", help=purpose, description=purpose)
+    parser.add_argument("file", type=Path, help="a zip")
+    parser.add_argument("folder", type=Path, help="not there yet, or empty")
+    parser.set_defaults(do=unpacked, failed=1)
+
+
+def archive(given: Namespace) -> int:
+    """Pack a run; say what a user should know of it on stderr."""
+    from octsim.config import Config
+    from octsim.loading import load_config
+    from octsim.overlays import merge, read_overlay
+    from octsim.packing import pack
+    from octsim.runs import run_in
+
+    folder = given.folder.expanduser()
+    overlay = read_overlay(given.config.expanduser()) if given.config else {}
+    said = load_config({key: part for key, part in overlay.items() if key == "archive"}).archive
+    data = merge(run_in(folder).config.to_dict(), {"archive": said.model_dump(mode="json")})
+    packed = pack(folder, Config.model_validate(data), given.file and given.file.expanduser())
+    for remark in packed.remarks:
+        print(f"octsim: warning: {remark}", file=sys.stderr)
+    print(packed)
+    return 0
+
+
+def verified(given: Namespace) -> int:
+    """Verify an archive."""
+    from octsim.archive import verify
+
+    path = given.path.expanduser()
+    verify(path)
+    print(f"{path}: as it was packed")
+    return 0
+
+
+def unpacked(given: Namespace) -> int:
+    """Unpack an archive."""
+    from octsim.archive import unpack
+
+    file, folder = given.file.expanduser(), given.folder.expanduser()
+    unpack(file, folder)
+    print(f"{folder}: unpacked, as it was packed")
+    return 0

@@ -1,0 +1,214 @@
+"""What stands in a run's archive, and what each file of it is."""
+
+import json
+from collections.abc import Mapping
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import netCDF4
+import yaml
+
+from octsim.config import Config
+from octsim.errors import ArchiveError
+from octsim.gallery import CAPTIONS, STAGES, TARGETS, figures_of
+from octsim.names import is_plain
+from octsim.overlays import merge
+from octsim.provenance import LOCK, lock_file
+from octsim.runs import FIGURES, Run
+
+CONFIG = "config.yaml"
+ENVIRONMENT = "environment.json"
+README = "README.md"
+INPUTS = "inputs"
+
+
+class Item(NamedTuple):
+    """A file of an archive."""
+
+    name: str
+    about: str
+    """What it is, in a line."""
+    source: Path | bytes
+    """Where it stands, or what it holds."""
+    form: str
+    """Media type."""
+    variables: tuple[str, ...] = ()
+    """What a dataset holds, with units."""
+    stages: tuple[str, ...] = ()
+    """Stages whose datasets a figure is drawn from."""
+
+
+class Made(NamedTuple):
+    """What a dataset records of its making."""
+
+    octsim_version: str
+    schema_version: int
+    source_digest: str
+    environment: Mapping[str, str] | None
+    """None of a file of octsim 0.1.0."""
+
+
+def figures_expected(run: Run, config: Config) -> dict[str, tuple[str, ...]]:
+    """Give the figures of a run and of the targets whose datasets it has, and their stages."""
+    beside = {
+        figure: (target,)
+        for target, figures in TARGETS.items()
+        if target in run.datasets
+        for figure in figures
+    }
+    return figures_of(config) | beside
+
+
+def series_of(run: Run, config: Config) -> Path | None:
+    """Give the measured series that a run's expansion was made from.
+
+    Raises
+    ------
+    ArchiveError
+        If it is not there any more.
+    """
+    if "expansion" not in run.datasets or config.expansion.series is None:
+        return None
+    file = Path(config.expansion.series).expanduser()
+    if not file.is_file():
+        raise ArchiveError(
+            f"{file}: not there, but expansion.nc was made from it (expansion.series); "
+            "put it back, or move expansion.nc away"
+        )
+    return file
+
+
+def archived_series(file: Path) -> str:
+    """Give the name of a series in the archive: its own, where that is plain."""
+    name = f"{INPUTS}/{file.name}"
+    return name if is_plain(name) else f"{INPUTS}/series{file.suffix if file.suffix else '.csv'}"
+
+
+def items(run: Run, config: Config) -> tuple[list[Item], dict[str, Made]]:
+    """Give the files of a run's archive but for those that describe it, and how its data was made.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    config : Config
+        The config that is archived with it.
+    """
+    found: list[Item] = []
+    made: dict[str, Made] = {}
+    for stage, file in run.datasets.items():
+        with netCDF4.Dataset(file) as dataset:
+            made[stage] = _made(dataset)
+            measured = tuple(
+                f"{name} ({getattr(one, 'units', '1')})" for name, one in dataset.variables.items()
+            )
+            about = str(dataset.getncattr("title"))
+        found.append(Item(f"{stage}.nc", about, file, "application/x-netcdf", measured))
+    expected = figures_expected(run, config)
+    for file in run.figures:
+        form = {".png": "image/png", ".svg": "image/svg+xml"}.get(file.suffix)
+        if file.stem in expected and form:
+            drawn = tuple(stage for stage in expected[file.stem] if stage in run.datasets)
+            about = CAPTIONS[file.stem]
+            found.append(Item(f"{FIGURES}/{file.name}", about, file, form, stages=drawn))
+    series = series_of(run, config)
+    if series:
+        name = archived_series(series)
+        config = Config.model_validate(merge(config.to_dict(), {"expansion": {"series": name}}))
+        form = "text/csv" if series.suffix == ".csv" else "application/octet-stream"
+        found.append(Item(name, "measured series of phases", series, form))
+    plain = {"archive": config.to_dict()["archive"]} | config.to_record()
+    text = yaml.safe_dump(plain, sort_keys=True, allow_unicode=True)
+    found.append(Item(CONFIG, "config of the run, every key", text.encode(), "application/yaml"))
+    lock = lock_file()
+    if lock:
+        about = f"versions that octsim {version('octsim')} is installed with, pinned with hashes"
+        found.append(Item(LOCK, about, lock, "text/plain"))
+    told = json.dumps({stage: one._asdict() for stage, one in made.items()}, indent=2) + "\n"
+    about = "of each dataset: version of octsim, digest of its sources, libraries, processor"
+    found.append(Item(ENVIRONMENT, about, told.encode(), "application/json"))
+    return found, made
+
+
+def remarks(run: Run, config: Config) -> list[str]:
+    """Say what a reader may miss in an archive of a run, a line each."""
+    missing = [f"{stage}.nc" for stage in STAGES if stage not in run.datasets]
+    drawn = {file.stem for file in run.figures}
+    expected = figures_expected(run, config)
+    missing += [f"{FIGURES}/{name}" for name in expected if name not in drawn]
+    left = sorted({file.name for file in run.figures if file.stem not in expected})
+    said = []
+    if missing:
+        said.append(f"the archive goes without {', '.join(missing)}, which are not made")
+    if left:
+        said.append(f"left out, as no figures of this run: {', '.join(left)}")
+    if not lock_file():
+        said.append(f"the archive goes without {LOCK}, which stands in a checkout of octsim alone")
+    return said
+
+
+def readme(
+    title: str, described: str, holds: list[Item], made: Mapping[str, Made], run: str
+) -> str:
+    """Write what an archive's README.md says."""
+    rows = "".join(f"| `{item.name}` | {item.about} |\n" for item in sorted(holds))
+    versions = sorted({one.octsim_version for one in made.values()})
+    return _README.format(
+        title=title, described=described, rows=rows, versions=" and ".join(versions),
+        version=versions[-1], run=run,
+    )  # fmt: skip
+
+
+def _made(dataset: Any) -> Made:
+    recorded = {name: dataset.getncattr(name) for name in dataset.ncattrs()}
+    environment = recorded.get("environment")
+    return Made(
+        str(recorded.get("octsim_version", "")),
+        int(recorded.get("schema_version", 0)),
+        str(recorded.get("source_digest", "")),
+        json.loads(environment) if environment else None,
+    )
+
+
+_README = """# {title}
+
+{described}
+
+| file | what it is |
+| --- | --- |
+{rows}| `SHA256SUMS` | SHA-256 of every file but itself |
+
+Made by octsim {versions}.
+
+## Check it
+
+In the folder of these files, with nothing but coreutils:
+
+```sh
+sha256sum -c SHA256SUMS
+```
+
+or with octsim, which finds additional files too: `octsim verify` and the folder or the zip.
+
+## Read it
+
+Datasets are netCDF-4 after the CF conventions; each variable has its unit and meaning.
+
+```python
+import xarray
+
+dataset = xarray.open_dataset("phase_slope.nc")
+```
+
+`config.yaml` is the whole config; `octsim.load_config("config.yaml")` reads it.
+`ro-crate-metadata.json` describes all of this for machines (RO-Crate).
+
+## Make it again
+
+In a checkout of octsim {version}, which `requirements.lock` pins the libraries of:
+
+```sh
+make reproduce FILE={run}.zip INTO=again
+```
+"""

@@ -1,0 +1,120 @@
+"""A run as one file for a data repository: what goes in, and how it is described."""
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+from octsim import zipped
+from octsim.config import Config
+from octsim.crate import METADATA, description_of, metadata, title_of
+from octsim.crate import remarks as asked_for
+from octsim.errors import ArchiveError, DatasetError
+from octsim.files import reason, whole
+from octsim.inventory import README, Item, items, readme, remarks
+from octsim.reading import differing
+from octsim.runs import Run, run_in
+from octsim.sums import SUMS, digest, pieces_of, written
+from octsim.zipped import Member
+
+
+class Packed(NamedTuple):
+    """What was packed."""
+
+    file: Path
+    files: int
+    bytes: int
+    remarks: tuple[str, ...]
+    """What a user should know, a line each."""
+
+    def __str__(self) -> str:
+        return f"{self.file}: {self.files} files, {self.bytes / 1e6:.1f} MB"
+
+
+def pack(folder: Path, config: Config, file: Path | None = None) -> Packed:
+    """Pack a run; the same datasets, figures and config give the same bytes.
+
+    Parameters
+    ----------
+    folder : path
+        The run's, ``results/<run>/``.
+    config : Config
+        The config that every dataset there follows from: the run's own or, to tell more of it,
+        the same with another section `archive`.
+    file : path, optional
+        The archive, replaced whole; ``<folder>/<run>.zip`` without one.
+
+    Raises
+    ------
+    ArchiveError
+        If a file of the run can't be read.
+    DatasetError
+        If a dataset can't be read, or follows from another config.
+    FileError
+        If the archive can't be written; what stood there before is still there.
+    """
+    run = _run_of(folder, config)
+    file = file or folder / f"{config.run}.zip"
+    try:
+        members = _members(run, config)
+    except OSError as error:
+        raise ArchiveError(f"{error.filename or folder}: can't be read ({reason(error)})") from None
+    with whole(file) as temporary, temporary.open("w+b") as stream:
+        zipped.write(stream, members)
+    said = [*asked_for(config.archive), *(f"{folder}: {one}" for one in remarks(run, config))]
+    return Packed(file, len(members), file.stat().st_size, tuple(said))
+
+
+def _run_of(folder: Path, config: Config) -> Run:
+    """Give a folder's run; refuse datasets that don't follow from the config."""
+    run = run_in(folder)
+    for stage, file in run.datasets.items():
+        differ = differing(stage, config, run.config.to_dict())
+        if differ or run.config.run != config.run:
+            raise DatasetError(
+                f"{file}: made from another config (its {', '.join(differ or ['run'])} differ); "
+                "run again to make it anew, or move it away"
+            )
+    return run
+
+
+def _members(run: Run, config: Config) -> list[Member]:
+    """Give all that is to be packed, with its sums."""
+    holds, made = items(run, config)
+    title, described = title_of(config.archive, config.run), description_of(config.archive)
+    about = "metadata of this archive (RO-Crate)"
+    told = [
+        Item(README, "what each file is", b"", "text/markdown"),
+        Item(METADATA, about, b"", "application/ld+json"),
+    ]
+    text = readme(title, described, [*holds, *told], made, config.run)
+    holds.append(told[0]._replace(source=text.encode()))
+    measured = {item.name: (_size(item), digest(_pieces(item))) for item in holds}
+    described_bytes = metadata(config.run, config.archive, holds, made, measured)
+    holds.append(told[1]._replace(source=described_bytes))
+    digests = {name: one for name, (_, one) in measured.items()}
+    digests[METADATA] = digest([described_bytes])
+    holds.append(Item(SUMS, "", written(digests), "text/plain"))
+    return [Member(item.name, _size(item), partial(_packed, item, digests)) for item in holds]
+
+
+def _size(item: Item) -> int:
+    return len(item.source) if isinstance(item.source, bytes) else item.source.stat().st_size
+
+
+def _pieces(item: Item) -> Iterator[bytes]:
+    if isinstance(item.source, bytes):
+        yield item.source
+    else:
+        yield from pieces_of(item.source)
+
+
+def _packed(item: Item, digests: Mapping[str, str]) -> Iterator[bytes]:
+    """Give what is packed of a file, which is read for the second time, and must be as it was."""
+    found = hashlib.sha256()
+    for piece in _pieces(item):
+        found.update(piece)
+        yield piece
+    if found.hexdigest() != digests.get(item.name, found.hexdigest()):
+        raise ArchiveError(f"{item.name}: changed while it was packed; pack again")
