@@ -112,7 +112,8 @@ def test_an_archive_is_made_anew_and_compared_with_what_was_made(
     assert done.stdout.splitlines()[-1] == "the same: every number within 0"
     found = octsim.compare(archive, tmp_path / "again" / "results" / "tiny", 0)
     assert [dataset.stage for dataset in found.datasets] == ["focus_scan", "phase_slope", "spectra"]
-    assert not found.differs
+    assert not any(dataset.differs(0) for dataset in found.datasets)
+    assert found.config == found.versions == ()
     body = bytearray(archive.read_bytes())
     body[len(body) // 2] ^= 1
     archive.write_bytes(body)
