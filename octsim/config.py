@@ -4,7 +4,10 @@ The models are the one source: `config/schema.json` and `docs/config.md` are gen
 `config/default.yaml` is tested against them.
 """
 
+import os
+import re
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -12,6 +15,7 @@ from numpy.typing import NDArray
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
 from octsim.calibration_config import ActionPotential, Calibration, ExpansionConfig
+from octsim.errors import ConfigError
 from octsim.processing import Processing as Processing
 from octsim.sections import (
     DiameterRange,
@@ -210,6 +214,24 @@ class Cache(Section):
     gigabytes: Annotated[Number, Field(ge=0, le=1e6)] = _key(
         4.0, "its largest size; 0 keeps and reads nothing"
     )
+
+    def path(self) -> Path:
+        """Give the file, with a home folder and environment variables as they are here and now.
+
+        Raises
+        ------
+        ConfigError
+            If a variable is not set.
+        """
+        # as os.path.expandvars finds them, which leaves alone those that are not set
+        named = (name.strip("{}") for name in re.findall(r"\$(\w+|\{[^}]*\})", self.file))
+        unset = [name for name in named if name not in os.environ]
+        if unset:
+            raise ConfigError(
+                f"cache.file: {self.file!r} given, but the environment variable {unset[0]} is not "
+                "set here; set it, or name a file without it"
+            )
+        return Path(os.path.expandvars(self.file)).expanduser()
 
 
 class Budget(Section):

@@ -174,7 +174,10 @@ def expected(config: Config) -> Estimate:
     CacheError
         If the file of the cache is none that can be used.
     """
-    file = Path(config.cache.file).expanduser()
+    try:
+        file = config.cache.path()
+    except ConfigError:  # what is set for a cluster's jobs need not be where they are sent from
+        return estimate(config, lambda _: None)
     if not file.exists():
         return estimate(config, lambda _: None)
     with opened(file, config.cache.gigabytes) as cache:

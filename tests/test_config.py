@@ -273,3 +273,14 @@ def test_parts_of_a_config_change_with_the_keys_they_hold_alone() -> None:
     assert parts_of(data, "scene.refractive_index", "sweep") == parts_of(
         changed, "scene.refractive_index", "sweep"
     )
+
+
+def test_a_cache_file_has_environment_variables(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OCTSIM_TEST_DISK", "/disk")
+    cache = load_config(
+        {"cache": {"file": "$OCTSIM_TEST_DISK/of.${OCTSIM_TEST_USER}.sqlite"}}
+    ).cache
+    with pytest.raises(ConfigError, match=r"^cache\.file: .* variable OCTSIM_TEST_USER is not set"):
+        cache.path()
+    monkeypatch.setenv("OCTSIM_TEST_USER", "me")
+    assert cache.path() == Path("/disk/of.me.sqlite")

@@ -73,7 +73,7 @@ def points(snakemake: Any, config: Config) -> Iterator["Points"]:
     from octsim.cache import opened
     from octsim.points import Points
 
-    with opened(Path(config.cache.file).expanduser(), config.cache.gigabytes) as cache:
+    with opened(config.cache.path(), config.cache.gigabytes) as cache:
         whence = Points(cache)
         try:
             yield whence
