@@ -7,6 +7,9 @@
 # make bench                                  speed, as ratios within one run
 # make bench-sweeps                           what a grid of 1000 combinations takes, minutes
 # make bench-peers                            the same beside other ray tracers, optional
+# make slurm                                  installs what runs on a cluster need besides
+# make test-slurm                             the same results on a private Slurm of one node
+# make bench-slurm                            what Slurm adds to each job
 # make kills                                  30 kills at random moments, 30 same results
 # make lock                                   resolve the dependencies anew
 PYTHON ?= python3
@@ -27,7 +30,8 @@ except octsim.ConfigError as error:
 endef
 export CHECK
 
-.PHONY: results archive reproduce test lint format docs bench bench-sweeps bench-peers kills lock clean
+.PHONY: results archive reproduce test lint format docs bench bench-sweeps bench-peers kills lock \
+	slurm test-slurm bench-slurm clean
 results: .venv/run
 	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
 	@$(BIN)/snakemake --cores $(CORES) --configfile "$(CONFIG)"
@@ -72,12 +76,24 @@ docs: results .venv/dev
 	$(PIP) install --require-hashes -r requirements-dev.lock
 	touch $@
 
+slurm: .venv/slurm
+.venv/slurm: .venv/run requirements-slurm.lock
+	$(PIP) install --require-hashes -r requirements-slurm.lock
+	touch $@
+
+test-slurm: .venv/dev .venv/slurm
+	OCTSIM_SLURM=1 $(BIN)/pytest tests/test_slurm.py
+
+bench-slurm: .venv/dev .venv/slurm
+	$(BIN)/python benchmarks/slurm.py
+
 COMPILE = $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate
 lock: .venv/bin/python
 	$(PIP) install uv
 	$(COMPILE) pyproject.toml --group build -o requirements.lock
 	$(COMPILE) pyproject.toml --group dev -c requirements.lock -o requirements-dev.lock
+	$(COMPILE) pyproject.toml --group build --extra slurm -c requirements.lock -o requirements-slurm.lock
 	$(COMPILE) benchmarks/peers.in -o benchmarks/peers.lock
 
 bench: .venv/run

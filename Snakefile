@@ -8,8 +8,10 @@
 # Each rule names the config keys that it reads and the script whose code it runs: nothing else
 # makes it run again. Outputs are marked `update`: a script replaces them whole, at its end, so a
 # run that fails leaves what was there.
+import math
 import os
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 from filelock import FileLock, Timeout
@@ -19,6 +21,7 @@ from octsim.files import require_folder
 from octsim.estimates import check_budget, expected
 from octsim.gallery import STAGES, TARGETS, figures_of
 from octsim.grid import remarks
+from octsim.latest import begin, is_latest
 from octsim.loading import load_config
 from octsim.provenance import lock_file, source_digest
 from octsim.reading import keys_read, needs_law, parts_of
@@ -40,6 +43,13 @@ for remark in remarks(run):
     print(f"octsim: warning: {remark}", file=sys.stderr)
 
 os.environ["OCTSIM_RUN"] = str(os.getpid())  # a job ends with the run that started it
+if workflow.is_main_process:
+    os.environ["OCTSIM_CORES"] = str(workflow.cores)
+elif not is_latest(Path(f"results/{run.run}")):
+    # queued on a cluster by a run that was killed: it must not touch what the next one makes
+    sys.exit("octsim: this job's run has ended, and another of its name has begun")
+# not workflow.cores, which in a job on a cluster are all that its node has
+CORES = int(os.environ["OCTSIM_CORES"])
 FIGURES = figures_of(run)
 SHARES = shares_of(run)  # a stage that takes long is scattered over several jobs
 LAW_SWEPT = f"results/{run.run}/focus_law.nc" if needs_law(run) else []
@@ -80,6 +90,23 @@ def shares(stage: str) -> list[str]:
     return [f"results/{run.run}/shares/{stage}-{n}-of-{of}.npz" for n in range(1, of + 1)]
 
 
+def hands(stage: str, beside: int = 1) -> int:
+    """Give the threads of a stage that traces, unless shares do, with as many such jobs beside."""
+    return 1 if SHARES[stage] > 1 else max(1, CORES // beside)
+
+
+def needs(*stages: str) -> dict[str, Callable[[object, int], int]]:
+    """Give what a job asks a cluster for: with a margin, and more each time it is tried."""
+    cost = estimate.of(*stages)
+    megabytes = math.ceil(600 + 1.5e-6 * cost.memory_bytes)  # and two snakemakes around it
+    of = max((SHARES.get(stage, 1) for stage in stages), default=1)
+    minutes = math.ceil(60 + 3 * cost.cpu_seconds / of / 60)
+    return {
+        "mem_mb": lambda _, attempt: attempt * megabytes,
+        "runtime": lambda _, attempt: attempt * minutes,
+    }
+
+
 onstart:
     # what is to be made, which may be less than all, may take more than was confirmed
     stages = {job.rule.name for job in workflow.persistence.dag.needrun_jobs()}
@@ -92,6 +119,7 @@ onstart:
         LOCK.acquire(blocking=False)
     except Timeout:
         sys.exit(f"octsim: another run is at work on results/{run.run}; wait for it or stop it")
+    begin(Path(f"results/{run.run}"))
 
 
 onsuccess:
@@ -129,6 +157,9 @@ rule share:
         temp("results/{run}/shares/{stage}-{number}-of-{of}.npz"),
     log:
         "results/{run}/logs/shares/{stage}-{number}-of-{of}.log",
+    resources:
+        mem_mb=lambda wildcards, attempt: needs(wildcards.stage)["mem_mb"](wildcards, attempt),
+        runtime=lambda wildcards, attempt: needs(wildcards.stage)["runtime"](wildcards, attempt),
     params:
         made_from=lambda wildcards: of_stage(wildcards.stage),
     message:
@@ -147,7 +178,9 @@ rule focus_scan:
         points="results/{run}/logs/focus_scan.json",
     benchmark:
         "results/{run}/benchmarks/focus_scan.tsv"
-    threads: max(1, workflow.cores // 2)
+    threads: hands("focus_scan", 2)
+    resources:
+        **needs("focus_scan"),
     params:
         made_from=of_stage("focus_scan"),
     message:
@@ -166,7 +199,9 @@ rule focus_sweep:
         points="results/{run}/logs/focus_sweep.json",
     benchmark:
         "results/{run}/benchmarks/focus_sweep.tsv"
-    threads: max(1, workflow.cores // 2)
+    threads: hands("focus_sweep", 2)
+    resources:
+        **needs("focus_sweep"),
     params:
         made_from=of_stage("focus_sweep"),
     message:
@@ -185,6 +220,8 @@ rule focus_law:
         "results/{run}/logs/focus_law.log",
     benchmark:
         "results/{run}/benchmarks/focus_law.tsv"
+    resources:
+        **needs(),
     params:
         made_from=of_stage("focus_law"),
     message:
@@ -205,7 +242,9 @@ rule detections:
         points="results/{run}/logs/detections.json",
     benchmark:
         "results/{run}/benchmarks/detections.tsv"
-    threads: workflow.cores
+    threads: hands("detections")
+    resources:
+        **needs("detections"),
     params:
         made_from=of_stage("detections"),
     message:
@@ -224,7 +263,9 @@ rule spectra:
         "results/{run}/logs/spectra.log",
     benchmark:
         "results/{run}/benchmarks/spectra.tsv"
-    threads: workflow.cores
+    threads: CORES
+    resources:
+        **needs("spectra"),
     params:
         made_from=of_stage("spectra"),
     message:
@@ -243,6 +284,8 @@ rule phase_slope:
         "results/{run}/logs/phase_slope.log",
     benchmark:
         "results/{run}/benchmarks/phase_slope.tsv"
+    resources:
+        **needs("phase_slope"),
     params:
         made_from=of_stage("phase_slope"),
     message:
@@ -269,7 +312,9 @@ rule figures:
         "results/{run}/logs/figures.log",
     benchmark:
         "results/{run}/benchmarks/figures.tsv"
-    threads: workflow.cores
+    threads: CORES
+    resources:
+        **needs("spectra", "phase_slope"),
     params:
         made_from=made_from("figures", "processing"),
     message:
@@ -288,7 +333,9 @@ rule stability:
         f"results/{run.run}/logs/stability.log",
     benchmark:
         f"results/{run.run}/benchmarks/stability.tsv"
-    threads: workflow.cores
+    threads: CORES
+    resources:
+        **needs(),
     params:
         # when it is asked for: the benchmarks need not be beside a workflow that is copied
         benchmark=lambda _: source_digest(BENCHMARKS / "stability.py"),
@@ -309,7 +356,9 @@ rule tradeoff:
         f"results/{run.run}/logs/tradeoff.log",
     benchmark:
         f"results/{run.run}/benchmarks/tradeoff.tsv"
-    threads: workflow.cores
+    threads: CORES
+    resources:
+        **needs(),
     params:
         made_from=of_stage("tradeoff"),
     message:
@@ -335,7 +384,9 @@ rule causes:
         f"results/{run.run}/logs/causes.log",
     benchmark:
         f"results/{run.run}/benchmarks/causes.tsv"
-    threads: workflow.cores
+    threads: CORES
+    resources:
+        **needs(),
     params:
         made_from=of_stage("causes"),
     message:
@@ -356,7 +407,9 @@ rule estimators:
         f"results/{run.run}/logs/estimators.log",
     benchmark:
         f"results/{run.run}/benchmarks/estimators.tsv"
-    threads: workflow.cores
+    threads: CORES
+    resources:
+        **needs(),
     params:
         made_from=of_stage("estimators"),
     message:
@@ -377,7 +430,9 @@ rule calibration:
         f"results/{run.run}/logs/calibration.log",
     benchmark:
         f"results/{run.run}/benchmarks/calibration.tsv"
-    threads: workflow.cores
+    threads: CORES
+    resources:
+        **needs(),
     params:
         made_from=of_stage("calibration"),
     message:
@@ -400,6 +455,8 @@ rule expansion:
         f"results/{run.run}/logs/expansion.log",
     benchmark:
         f"results/{run.run}/benchmarks/expansion.tsv"
+    resources:
+        **needs(),
     params:
         made_from=of_stage("expansion"),
     message:
@@ -425,7 +482,9 @@ rule action_potential:
         f"results/{run.run}/logs/action_potential.log",
     benchmark:
         f"results/{run.run}/benchmarks/action_potential.tsv"
-    threads: workflow.cores
+    threads: CORES
+    resources:
+        **needs(),
     params:
         made_from=of_stage("action_potential"),
     message:

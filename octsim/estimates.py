@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from octsim.cache import opened
+from octsim.cacheplace import cache_file
 from octsim.config import Config
 from octsim.errors import ConfigError
 from octsim.grid import axes, combinations
@@ -174,7 +175,10 @@ def expected(config: Config) -> Estimate:
     CacheError
         If the file of the cache is none that can be used.
     """
-    file = Path(config.cache.file).expanduser()
+    try:
+        file = cache_file(config.cache.file)
+    except ConfigError:  # what is set for a cluster's jobs need not be where they are sent from
+        return estimate(config, lambda _: None)
     if not file.exists():
         return estimate(config, lambda _: None)
     with opened(file, config.cache.gigabytes) as cache:

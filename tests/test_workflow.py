@@ -369,6 +369,60 @@ def test_an_archive_is_packed_when_something_of_it_has_changed(law: Checkout) ->
     assert file.read_bytes() == first
 
 
+def test_the_profile_of_a_cluster_cures_what_the_default_one_does() -> None:
+    default, slurm = (
+        yaml.safe_load((ROOT / "profiles" / name / "config.yaml").read_text())
+        for name in ("default", "slurm")
+    )
+    assert {key: slurm[key] for key in default if key != "cores"} == {
+        key: value for key, value in default.items() if key != "cores"
+    }
+
+
+def test_a_cache_file_s_unset_variable_is_refused_in_a_line(tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    done = checkout.snakemake(
+        merged(TINY, {"cache": {"file": "$OCTSIM_NOT_SET/points.sqlite"}}), "--until", "focus_scan"
+    )
+    assert done.returncode != 0
+    assert "octsim: cache.file: '$OCTSIM_NOT_SET/points.sqlite' given, but" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def as_a_job(folder: Path, file: str, **environment: str) -> str:
+    """Do what a cluster's job does on a node of 64 cores; give what it says."""
+    command = [
+        sys.executable, "-m", "snakemake", "--configfile", "mine.yaml", "--mode", "remote",
+        "--cores", "64", "--force", "--no-hooks", "--nolock", f"results/tiny/{file}",
+    ]  # fmt: skip
+    done = subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, check=False,
+        env={**os.environ, "OCTSIM_CORES": "4", **environment},
+    )  # fmt: skip
+    return done.stdout + done.stderr
+
+
+def test_a_job_of_a_run_that_another_has_followed_does_nothing(tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    checkout.run(TINY, "--until", "focus_scan")
+    file = tmp_path / "results" / "tiny" / "focus_scan.nc"
+    before = file.stat().st_mtime_ns
+    said = as_a_job(tmp_path, file.name, OCTSIM_RUN_ID="of an earlier run")
+    assert "octsim: this job's run has ended, and another of its name has begun" in said
+    assert file.stat().st_mtime_ns == before
+    as_a_job(tmp_path, file.name)
+    assert file.stat().st_mtime_ns > before
+
+
+def test_a_job_has_the_threads_that_its_run_counted(tmp_path: Path) -> None:
+    Checkout(tmp_path)
+    script = tmp_path / "workflow" / "scripts" / "detections.py"
+    script.write_text("import pathlib; pathlib.Path('threads').write_text(str(snakemake.threads))")
+    (tmp_path / "mine.yaml").write_text(yaml.safe_dump(merged(TINY, GIVEN)))
+    as_a_job(tmp_path, "detections.nc")
+    assert (tmp_path / "threads").read_text() == "4"
+
+
 GRID: dict[str, Any] = merged(
     TINY,
     GIVEN,

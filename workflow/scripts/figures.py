@@ -24,9 +24,10 @@ with job(snakemake) as config, look():
     names = dict.fromkeys(Path(file).stem for file in snakemake.output)
     left = [variable for name in names for variable in NOT_DRAWN.get(name, ())]
     stages = {stage: read(file, stage, config, left) for stage, file in snakemake.input.items()}
-    with ProcessPoolExecutor(snakemake.threads, get_context("fork"), end_with_the_run) as pool:
-        list(pool.map(draw, names))
     folder = Path(snakemake.output[0]).parent
+    ends = (end_with_the_run, (folder.parent,))
+    with ProcessPoolExecutor(snakemake.threads, get_context("fork"), *ends) as pool:
+        list(pool.map(draw, names))
     for stale in set(FIGURES) - set(names):  # of the config before
         for file in folder.glob(f"{stale}.*"):
             file.unlink()

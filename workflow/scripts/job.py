@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from octsim.config import Config
 from octsim.errors import OctsimError, OctsimWarning
 from octsim.files import whole
+from octsim.latest import is_latest
 from octsim.loading import load_config
 
 if TYPE_CHECKING:
@@ -25,13 +26,19 @@ if TYPE_CHECKING:
     from octsim.scatter import Share
 
 
-def end_with_the_run() -> None:
-    """End this process as soon as its run has ended: none goes on to write beside the next run."""
+def end_with_the_run(folder: Path) -> None:
+    """End this process as soon as its run has ended: none goes on to write beside the next run.
+
+    On a cluster a run's end is not seen, but the next run in its folder is.
+    """
     run, parent = int(os.environ["OCTSIM_RUN"]), os.getppid()
 
     def watch() -> None:
-        while os.getppid() == parent and _is_alive(run):
-            time.sleep(0.1)
+        while is_latest(folder):  # once a second, as that asks a file server
+            for _ in range(10):
+                if os.getppid() != parent or not _is_alive(run):
+                    os._exit(1)
+                time.sleep(0.1)
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
@@ -48,7 +55,7 @@ def _is_alive(process: int) -> bool:
 @contextmanager
 def job(snakemake: Any) -> Iterator[Config]:
     """Give a job its config; log what it says; end it with one line if a user can mend it."""
-    end_with_the_run()
+    end_with_the_run(Path(snakemake.log[0]).parent.parent)
     logging.basicConfig(filename=snakemake.log[0], level=logging.INFO, format="%(message)s")
     logging.captureWarnings(capture=True)
     logging.raiseExceptions = False  # a full disk is said once, by what hits it
@@ -75,6 +82,7 @@ def trace(snakemake: Any, config: Config, stage: "Callable[[Points, Share], Stre
     """
     # numba's import is not for jobs that trace nothing
     from octsim.cache import opened
+    from octsim.cacheplace import cache_file
     from octsim.netcdf import write_stream
     from octsim.points import Points
     from octsim.progress import watched
@@ -86,7 +94,7 @@ def trace(snakemake: Any, config: Config, stage: "Callable[[Points, Share], Stre
         _count(snakemake, notes_of(shares))
         return
     number, of = map(int, (snakemake.wildcards.get(name, 1) for name in ("number", "of")))
-    with opened(Path(config.cache.file).expanduser(), config.cache.gigabytes) as cache:
+    with opened(cache_file(config.cache.file), config.cache.gigabytes) as cache:
         whence = Points(cache)
         stream = watched(stage(whence, Share(number, of)))
         try:

@@ -1,0 +1,53 @@
+"""Where the point cache lies: as named, and in a cluster's job on its own node."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from octsim.cacheplace import cache_file
+from octsim.errors import CacheError, ConfigError
+
+
+@pytest.fixture
+def job(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Be a job of Slurm, on a node with this folder for temporary files."""
+    monkeypatch.setenv("SLURM_JOB_ID", "7")
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    return tmp_path / f"octsim-{os.getuid()}"
+
+
+@pytest.fixture(autouse=True)
+def no_job(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SLURM_JOB_ID", raising=False)
+
+
+def test_a_file_is_where_it_is_named_with_environment_variables(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert cache_file(".octsim/points.sqlite") == Path(".octsim/points.sqlite")
+    assert cache_file("~/points") == Path.home() / "points"
+    monkeypatch.setenv("OCTSIM_TEST_DISK", "/disk")
+    named = "$OCTSIM_TEST_DISK/of.${OCTSIM_TEST_USER}.sqlite"
+    with pytest.raises(ConfigError, match=r"^cache\.file: .* variable OCTSIM_TEST_USER is not set"):
+        cache_file(named)
+    monkeypatch.setenv("OCTSIM_TEST_USER", "me")
+    assert cache_file(named) == Path("/disk/of.me.sqlite")
+
+
+def test_a_relative_file_of_a_cluster_s_job_is_the_node_s_own(job: Path) -> None:
+    assert cache_file(".octsim/points.sqlite") == job / ".octsim" / "points.sqlite"
+    assert job.stat().st_mode & 0o777 == 0o700
+    assert cache_file("/disk/points") == Path("/disk/points")
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can give a folder away")
+def test_a_node_s_folder_of_somebody_else_is_refused_in_a_line(job: Path) -> None:
+    job.mkdir()
+    os.chown(job, 12345, -1)
+    with pytest.raises(CacheError, match="belongs to somebody else; give cache.file a name"):
+        cache_file("points.sqlite")
+    job.rmdir()
+    job.symlink_to(job.parent)
+    with pytest.raises(CacheError, match="belongs to somebody else"):
+        cache_file("points.sqlite")
