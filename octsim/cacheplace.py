@@ -34,8 +34,8 @@ def cache_file(named: str) -> Path:
     unset = [name for name in variables if name not in os.environ]
     if unset:
         raise ConfigError(
-            f"cache.file: {named!r} given, but the environment variable {unset[0]} is not set here; "
-            "set it, or name a file without it"
+            f"cache.file: {named!r} given, but the environment variable {unset[0]} is not set "
+            "here; set it, or name a file without it"
         )
     file = Path(os.path.expandvars(named)).expanduser()
     return file if file.is_absolute() or _JOB not in os.environ else _on_this_node(file)
