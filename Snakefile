@@ -49,7 +49,7 @@ elif not is_latest(Path(f"results/{run.run}")):
     # queued on a cluster by a run that was killed: it must not touch what the next one makes
     sys.exit("octsim: this job's run has ended, and another of its name has begun")
 # not workflow.cores, which in a job on a cluster are all that its node has
-CORES = int(os.environ["OCTSIM_CORES"])
+CORES = int(os.environ.get("OCTSIM_CORES", workflow.cores))
 FIGURES = figures_of(run)
 SHARES = shares_of(run)  # a stage that takes long is scattered over several jobs
 LAW_SWEPT = f"results/{run.run}/focus_law.nc" if needs_law(run) else []

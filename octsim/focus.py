@@ -83,8 +83,7 @@ def _scanned(layout: Layout, whence: Points, threads: int, share: Share) -> Iter
         scanner, diameter = _scanner(at.config, whence), at.config.focus_scan.diameter
         return ((scanner, diameter, z) for z in layout.own[at.position]["focus"][1][span].tolist())
 
-    every = layout.blocks(lambda config: points_per_block(*point_cost(config)))
-    blocks = share.among(every)
+    blocks = share.of_points(layout)
     for (at, span), found in each_block(lambda p: p[0](p[1], p[2]), blocks, points_of, threads):
         light, rays = zip(*found, strict=True)
         variables = {

@@ -17,6 +17,7 @@ from octsim.errors import DatasetError
 from octsim.estimates import estimate, point_cost
 from octsim.files import reason, whole
 from octsim.grid import Combination
+from octsim.layout import Layout, points_per_block
 from octsim.parts import Part, Stream, arrays
 from octsim.reading import differing
 
@@ -34,6 +35,10 @@ class Share(NamedTuple):
     """Its number, from 1."""
     of: int = 1
     """How many there are."""
+
+    def of_points(self, layout: Layout) -> list[Block]:
+        """Give this share's blocks of a stage whose points are traced one by one."""
+        return self.among(layout.blocks(lambda config: points_per_block(*point_cost(config))))
 
     def among(self, blocks: Iterable[Block]) -> list[Block]:
         """Give the blocks of this share: neighbours, and about as much to trace as any other's."""
