@@ -129,6 +129,10 @@ onsuccess:
         told = [line for line in lines if line.startswith(("octsim: ", "phase slope", "mean "))]
         print(*told, sep="\n", end="\n" if told else "", file=sys.stderr)
     print(f"octsim: datasets and figures are in results/{run.run}/", file=sys.stderr)
+    wanted = [Path(file).name for stage in SCATTERED for file in shares(stage)]
+    for share in Path(f"results/{run.run}/shares").glob("*.npz"):
+        if share.name not in wanted:  # of a run that was given up, cut otherwise
+            share.unlink()
 
 
 onerror:
@@ -498,7 +502,6 @@ rule archive:
         rules.all.input,
         BESIDE,
         lock_file() or [],
-        SERIES if f"results/{run.run}/expansion.nc" in BESIDE else [],
     output:
         update(expand("results/{run}/{run}.zip", run=run.run)),
     log:

@@ -12,7 +12,7 @@ from typing import IO
 
 from octsim import zipped
 from octsim.errors import ArchiveError, FileError
-from octsim.files import reason
+from octsim.files import reason, require_empty
 from octsim.sums import LARGEST, SUMS, differences, digest, parsed, pieces_of
 
 
@@ -66,14 +66,13 @@ def unpack(file: Path, folder: Path) -> None:
     Raises
     ------
     ArchiveError
-        If the archive is not as it was packed, or the folder holds something; nothing is written.
+        If the archive is not as it was packed; nothing is written.
     FileError
-        If the folder can't be written; nothing is left in it.
+        If the folder holds something, or can't be written; nothing is left in it.
     """
     if file.is_dir():
         raise ArchiveError(f"{file}: is a folder; give an archive's zip")
-    if folder.exists() and not (folder.is_dir() and not any(folder.iterdir())):
-        raise ArchiveError(f"{folder}: is there already and not an empty folder; name another")
+    require_empty(folder)
     verify(file)
     try:
         place = folder.resolve()

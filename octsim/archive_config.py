@@ -70,6 +70,14 @@ class Creator(Section):
     affiliation: Line | None = None
 
 
+def _distinct(creators: tuple[Creator, ...]) -> tuple[Creator, ...]:
+    known = [one.orcid for one in creators if one.orcid]
+    for orcid in known:
+        if known.count(orcid) > 1:
+            raise ValueError(f"the ORCID iD {orcid} is given for two of them; each has an own one")
+    return creators
+
+
 def _frozen(value: object) -> object:
     if not isinstance(value, list | tuple):
         raise ValueError("it should be a list, with {name: ...} for each")  # noqa: TRY004
@@ -81,9 +89,9 @@ class ArchiveConfig(Section):
 
     title: Line | None = key(None, "of the deposit; null names the run")
     description: Paragraph | None = key(None, "of the deposit; null says what octsim simulates")
-    creators: Annotated[tuple[Creator, ...], BeforeValidator(_frozen)] = key(
-        (), "who made the data: {name, orcid, affiliation} each, the last two optional"
-    )
+    creators: Annotated[
+        tuple[Creator, ...], BeforeValidator(_frozen), AfterValidator(_distinct)
+    ] = key((), "who made the data: {name, orcid, affiliation} each, the last two optional")
     license: Annotated[str, AfterValidator(_license)] = key(LICENSE, "of the data, an SPDX id")
     date: Annotated[str | None, BeforeValidator(_day)] = key(
         None, "of publication, as 2026-01-31; null takes SOURCE_DATE_EPOCH, else 1980-01-01"

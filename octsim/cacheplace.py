@@ -1,7 +1,9 @@
 """Where the point cache lies on the machine that asks."""
 
+import contextlib
 import os
 import re
+import stat
 import tempfile
 from pathlib import Path
 
@@ -27,7 +29,7 @@ def cache_file(named: str) -> Path:
     ConfigError
         If a variable is not set.
     CacheError
-        If the node's folder is somebody else's, who could put anything there.
+        If others can write the node's folder: they could put anything there.
     """
     # as os.path.expandvars finds them, which leaves alone those that are not set
     variables = (name.strip("{}") for name in re.findall(r"\$(\w+|\{[^}]*\})", named))
@@ -43,9 +45,13 @@ def cache_file(named: str) -> Path:
 
 def _on_this_node(file: Path) -> Path:
     folder = Path(tempfile.gettempdir()) / f"octsim-{os.getuid()}"
-    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-    if folder.is_symlink() or folder.stat().st_uid != os.getuid():
+    with contextlib.suppress(FileExistsError):
+        folder.mkdir(mode=0o700, parents=True)
+    found = folder.lstat()
+    others = stat.S_IWGRP | stat.S_IWOTH
+    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or found.st_mode & others:
         raise CacheError(
-            f"{folder}: belongs to somebody else; give cache.file a name that starts with / instead"
+            f"{folder}: not a folder that only you can write; move it away, or give cache.file a "
+            "name that starts with /"
         )
     return folder / file

@@ -13,15 +13,17 @@ PARTS = (archive_command, compare_command, cache_command)
 """Modules that add commands of their own."""
 
 
-class _Parser(argparse.ArgumentParser):
+class Parser(argparse.ArgumentParser):
+    """Says in one line what is wrong with the arguments."""
+
     def error(self, message: str) -> NoReturn:
-        """Say in one line what is wrong with the arguments."""
+        """Say it, and where more is said."""
         self.exit(2, f"{self.prog}: {message}; `{self.prog} --help` says what there is\n")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; give its exit status."""
-    parser = _Parser(prog="octsim", description="Ray tracing of OCT of a neuron.")
+    parser = Parser(prog="octsim", description="Ray tracing of OCT of a neuron.")
     commands = parser.add_subparsers(required=True, metavar="command")
     for part in PARTS:
         part.add(commands)

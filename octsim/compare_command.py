@@ -9,7 +9,7 @@ from octsim.errors import DatasetError
 from octsim.reading import stage_axes
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    import xarray as xr
 
     from octsim.recorded import Recorded
 
@@ -63,19 +63,19 @@ def compare(given: argparse.Namespace) -> int:
     # xarray and matplotlib are not for those who ask for the cache
     from octsim.contrast import contrast
     from octsim.contrast_text import lines
+    from octsim.figures.contrast import figure_contrast
     from octsim.figures.style import look, save
     from octsim.recorded import recorded
 
     with recorded(given.A) as one, recorded(given.B) as other:
         figure = None if given.no_figure else given.figure or _usual(one, other)
-        # first, as it may be refused, and the numbers may take a while
-        if figure:
-            with look():
-                save(_drawn(one, other), figure)
+        slopes = _slopes(one, other) if figure else None  # a figure that can't be is said at once
         found = contrast(one, other, given.tolerance)
-    print(*lines(found), sep="\n")
-    if figure:
-        print(f"figure: {figure}")
+        print(*lines(found), sep="\n")
+        if figure and slopes:
+            with look():
+                save(figure_contrast(slopes, _named(one, other)), figure)
+            print(f"figure: {figure}")
     return int(found.differs)
 
 
@@ -88,9 +88,9 @@ def _usual(first: "Recorded", second: "Recorded") -> Path | None:
     return Path(f"compare_{first.config.run}_{second.config.run}.png") if both else None
 
 
-def _drawn(first: "Recorded", second: "Recorded") -> "Figure":
+def _slopes(first: "Recorded", second: "Recorded") -> "tuple[xr.Dataset, xr.Dataset]":
+    """Read what the figure is drawn from."""
     from octsim.datasets import read
-    from octsim.figures.contrast import figure_contrast
 
     slopes = []
     for run in (first, second):
@@ -98,10 +98,17 @@ def _drawn(first: "Recorded", second: "Recorded") -> "Figure":
         if file is None:
             raise DatasetError(f"{run.name}: no phase_slope.nc, which the figure is drawn from")
         slope = read(file, "phase_slope", without=["component_phase_slope"])
+        for name in ("phase_slope", "ideal_phase_slope", "predicted_phase_slope"):
+            if name not in slope:
+                raise DatasetError(f"{file}: lacks {name}; --no-figure compares it without")
         if slope["phase_slope"].ndim != 1:
             raise DatasetError(f"{file}: of a grid, while the figure is of two runs without one")
         slopes.append(slope)
-    names = (first.config.run, second.config.run)
-    if names[0] == names[1]:
-        names = (f"{first.name} (A)", f"{second.name} (B)")
-    return figure_contrast((slopes[0], slopes[1]), names)
+    return slopes[0], slopes[1]
+
+
+def _named(first: "Recorded", second: "Recorded") -> tuple[str, str]:
+    """Give names that tell two runs apart."""
+    if first.config.run != second.config.run:
+        return first.config.run, second.config.run
+    return f"{first.name} (A)", f"{second.name} (B)"

@@ -170,7 +170,8 @@ def _both(stage: str, first: Recorded, second: Recorded) -> Iterator[tuple[xr.Da
     with opened(files[0], stage) as one, opened(files[1], stage) as other:
         try:
             yield one, other
-        except (OSError, RuntimeError) as error:
+        # whatever a damaged or hostile file makes of its sizes and types
+        except (OSError, RuntimeError, ValueError, TypeError, LookupError, MemoryError) as error:
             which = " or ".join(map(str, files))
             raise DatasetError(f"{which}: can't be read ({reason(error)})") from None
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from octsim.archive_config import ArchiveConfig
 from octsim.errors import ArchiveError
-from octsim.inventory import CONFIG, INPUTS, Item, Made
+from octsim.inventory import CONFIG, Item, Made
 from octsim.sums import SUMS
 
 METADATA = "ro-crate-metadata.json"
@@ -112,7 +112,7 @@ def metadata(
             files[item.name]["isBasedOn"] = [files[f"{stage}.nc"] for stage in item.stages]
     said = {"name": "SHA-256 of every file but itself", "encodingFormat": "text/plain"}
     crate.add_file(dest_path=SUMS, properties=said)
-    given_to = [files[name] for name in files if name == CONFIG or name.startswith(f"{INPUTS}/")]
+    given_to = [files[CONFIG]]
     for version in sorted({one.octsim_version for one in made.values()}):
         said = {"name": "octsim", "softwareVersion": version}
         octsim = crate.add(SoftwareApplication(crate, f"#octsim-{version}", said))

@@ -162,13 +162,13 @@ def _checked(
 ) -> xr.Dataset:
     """Refuse a dataset of another stage, config or time; give it as this octsim writes it."""
     found = dataset.attrs.get("stage")
-    if found is None or found != (stage or found):
+    if not isinstance(found, str) or found != (stage or found):
         what = f"octsim's dataset of the stage {stage}" if stage else "a dataset of octsim"
         raise DatasetError(f"{path}: not {what}; {_remedy(path)}")
     dataset = upgraded(dataset, path)
     if config is None:
         return dataset
-    differ = differing(str(found), config, json.loads(dataset.attrs["config"]))
+    differ = differing(found, config, json.loads(dataset.attrs["config"]))
     if differ:
         raise DatasetError(
             f"{path}: made from another config (its {', '.join(differ)} differ); {_remedy(path)}"

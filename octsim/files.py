@@ -42,6 +42,20 @@ def require_folder(path: Path) -> None:
         )
 
 
+def require_empty(folder: Path) -> None:
+    """Check that a folder holds nothing, or is not there yet.
+
+    Raises
+    ------
+    FileError
+        If it does.
+    """
+    if folder.exists() and not (folder.is_dir() and not any(folder.iterdir())):
+        raise FileError(
+            f"{folder}: not an empty folder; give one that is, or that is not there yet"
+        )
+
+
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
     """Give a temporary name beside `path`, that is renamed to it once the file is complete.

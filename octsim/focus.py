@@ -7,9 +7,8 @@ import numpy as np
 
 from octsim.config import Config
 from octsim.datasets import flags
-from octsim.estimates import point_cost
 from octsim.grid import Combination
-from octsim.layout import Coordinate, Layout, points_per_block
+from octsim.layout import Coordinate, Layout
 from octsim.light import AccuracyStatus, Light
 from octsim.parts import Part, Stage, Stream
 from octsim.points import Points
@@ -83,7 +82,7 @@ def _scanned(layout: Layout, whence: Points, threads: int, share: Share) -> Iter
         scanner, diameter = _scanner(at.config, whence), at.config.focus_scan.diameter
         return ((scanner, diameter, z) for z in layout.own[at.position]["focus"][1][span].tolist())
 
-    blocks = share.of_points(layout)
+    blocks = share.blocks(layout)
     for (at, span), found in each_block(lambda p: p[0](p[1], p[2]), blocks, points_of, threads):
         light, rays = zip(*found, strict=True)
         variables = {
@@ -139,12 +138,7 @@ def _swept(layout: Layout, whence: Points, threads: int, share: Share) -> Iterat
         found: Brightness = measure(light)
         return found
 
-    def most(config: Config) -> int:
-        size, seconds = point_cost(config)
-        fractions = config.focus_law.fraction.num
-        return points_per_block(size * fractions, seconds * fractions)
-
-    blocks = share.among(layout.blocks(most))
+    blocks = share.blocks(layout)
     dimensions = ("diameter", "fraction")
     for (at, span), found in each_block(measured, blocks, points_of, threads):
         heights = foci(at, span)

@@ -10,17 +10,16 @@ import netCDF4
 import yaml
 
 from octsim.config import Config
-from octsim.errors import ArchiveError
+from octsim.environment import environment
 from octsim.gallery import CAPTIONS, STAGES, TARGETS, figures_of
-from octsim.names import is_plain
-from octsim.overlays import merge
 from octsim.provenance import LOCK, lock_file
 from octsim.runs import FIGURES, Run
+from octsim.schema import printable, recorded_environment
 
 CONFIG = "config.yaml"
 ENVIRONMENT = "environment.json"
 README = "README.md"
-INPUTS = "inputs"
+_FORMS = {".png": "image/png", ".svg": "image/svg+xml"}
 
 
 class Item(NamedTuple):
@@ -60,31 +59,6 @@ def figures_expected(run: Run, config: Config) -> dict[str, tuple[str, ...]]:
     return figures_of(config) | beside
 
 
-def series_of(run: Run, config: Config) -> Path | None:
-    """Give the measured series that a run's expansion was made from.
-
-    Raises
-    ------
-    ArchiveError
-        If it is not there any more.
-    """
-    if "expansion" not in run.datasets or config.expansion.series is None:
-        return None
-    file = Path(config.expansion.series).expanduser()
-    if not file.is_file():
-        raise ArchiveError(
-            f"{file}: not there, but expansion.nc was made from it (expansion.series); "
-            "put it back, or move expansion.nc away"
-        )
-    return file
-
-
-def archived_series(file: Path) -> str:
-    """Give the name of a series in the archive: its own, where that is plain."""
-    name = f"{INPUTS}/{file.name}"
-    return name if is_plain(name) else f"{INPUTS}/series{file.suffix if file.suffix else '.csv'}"
-
-
 def items(run: Run, config: Config) -> tuple[list[Item], dict[str, Made]]:
     """Give the files of a run's archive but for those that describe it, and how its data was made.
 
@@ -99,25 +73,19 @@ def items(run: Run, config: Config) -> tuple[list[Item], dict[str, Made]]:
     made: dict[str, Made] = {}
     for stage, file in run.datasets.items():
         with netCDF4.Dataset(file) as dataset:
-            made[stage] = _made(dataset)
+            recorded = {name: dataset.getncattr(name) for name in dataset.ncattrs()}
             measured = tuple(
                 f"{name} ({getattr(one, 'units', '1')})" for name, one in dataset.variables.items()
             )
-            about = str(dataset.getncattr("title"))
+        made[stage] = _made(recorded)
+        about = printable(recorded.get("title", stage))
         found.append(Item(f"{stage}.nc", about, file, "application/x-netcdf", measured))
     expected = figures_expected(run, config)
     for file in run.figures:
-        form = {".png": "image/png", ".svg": "image/svg+xml"}.get(file.suffix)
-        if file.stem in expected and form:
+        if file.stem in expected and file.suffix in _FORMS:
             drawn = tuple(stage for stage in expected[file.stem] if stage in run.datasets)
-            about = CAPTIONS[file.stem]
+            about, form = CAPTIONS[file.stem], _FORMS[file.suffix]
             found.append(Item(f"{FIGURES}/{file.name}", about, file, form, stages=drawn))
-    series = series_of(run, config)
-    if series:
-        name = archived_series(series)
-        config = Config.model_validate(merge(config.to_dict(), {"expansion": {"series": name}}))
-        form = "text/csv" if series.suffix == ".csv" else "application/octet-stream"
-        found.append(Item(name, "measured series of phases", series, form))
     plain = {"archive": config.to_dict()["archive"]} | config.to_record()
     text = yaml.safe_dump(plain, sort_keys=True, allow_unicode=True)
     found.append(Item(CONFIG, "config of the run, every key", text.encode(), "application/yaml"))
@@ -131,20 +99,29 @@ def items(run: Run, config: Config) -> tuple[list[Item], dict[str, Made]]:
     return found, made
 
 
-def remarks(run: Run, config: Config) -> list[str]:
+def remarks(run: Run, config: Config, holds: list[Item], made: Mapping[str, Made]) -> list[str]:
     """Say what a reader may miss in an archive of a run, a line each."""
+    packed = {item.name for item in holds}
+    drawn = {Path(name).stem for name in packed if name.startswith(f"{FIGURES}/")}
     missing = [f"{stage}.nc" for stage in STAGES if stage not in run.datasets]
-    drawn = {file.stem for file in run.figures}
-    expected = figures_expected(run, config)
-    missing += [f"{FIGURES}/{name}" for name in expected if name not in drawn]
-    left = sorted({file.name for file in run.figures if file.stem not in expected})
+    missing += [f"{FIGURES}/{name}" for name in figures_expected(run, config) if name not in drawn]
+    folder = next(iter(run.datasets.values())).parent
+    beside = [*folder.glob("*.nc"), *(folder / FIGURES).glob("*")]
+    names = {file.relative_to(folder).as_posix() for file in beside if file.name[0] != "."}
+    left = sorted(names - packed)
+    elsewhere = [stage for stage, one in made.items() if one.environment != environment()]
     said = []
     if missing:
         said.append(f"the archive goes without {', '.join(missing)}, which are not made")
     if left:
-        said.append(f"left out, as no figures of this run: {', '.join(left)}")
+        said.append(f"left out, as no datasets or figures of this run: {', '.join(left)}")
     if not lock_file():
         said.append(f"the archive goes without {LOCK}, which stands in a checkout of octsim alone")
+    elif elsewhere:
+        said.append(
+            f"{LOCK} is this octsim's, but {', '.join(elsewhere)} was computed with other "
+            f"libraries or on another processor ({ENVIRONMENT} tells)"
+        )
     return said
 
 
@@ -156,18 +133,16 @@ def readme(
     versions = sorted({one.octsim_version for one in made.values()})
     return _README.format(
         title=title, described=described, rows=rows, versions=" and ".join(versions),
-        version=versions[-1], run=run,
+        version=version("octsim"), run=run,
     )  # fmt: skip
 
 
-def _made(dataset: Any) -> Made:
-    recorded = {name: dataset.getncattr(name) for name in dataset.ncattrs()}
-    environment = recorded.get("environment")
+def _made(recorded: Mapping[str, Any]) -> Made:
     return Made(
-        str(recorded.get("octsim_version", "")),
+        printable(recorded.get("octsim_version", "")),
         int(recorded.get("schema_version", 0)),
-        str(recorded.get("source_digest", "")),
-        json.loads(environment) if environment else None,
+        printable(recorded.get("source_digest", "")),
+        recorded_environment(recorded),
     )
 
 
@@ -206,9 +181,12 @@ dataset = xarray.open_dataset("phase_slope.nc")
 
 ## Make it again
 
-In a checkout of octsim {version}, which `requirements.lock` pins the libraries of:
+In a checkout of octsim {version}, which packed this and whose libraries `requirements.lock` pins:
 
 ```sh
 make reproduce FILE={run}.zip INTO=again
 ```
+
+It takes the config that the datasets record, makes them anew and names what differs;
+`environment.json` has what each was computed with.
 """

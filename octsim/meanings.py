@@ -221,6 +221,8 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "wavelength_min_sensitivity": ("mrad/nm2", "change of the phase slope with the band's edge"),
     "wavelength_max_sensitivity": ("mrad/nm2", "change of the phase slope with the band's edge"),
     "time": ("s", "time"),
+    "measured_phase": ("rad", "phase as it was measured"),
+    "measured_phase_error": ("rad", "standard error of the phase as it was measured"),
     "phase_change": ("rad", "change of the phase from rest"),
     "expansion": ("nm", "change of the diameter from rest"),
     "statistical_error": ("nm", "standard error of that change, by the phase's"),

@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 
 from octsim.config import Config
 from octsim.datasets import make
-from octsim.errors import ConfigError, OctsimError
+from octsim.errors import ConfigError, DatasetError, OctsimError
 from octsim.series import Series, change_from_rest, read_series
 
 Array = NDArray[np.float64]
@@ -138,7 +138,8 @@ def series_expansion(config: Config, series: Series, calibration: xr.Dataset) ->
     -------
     Dataset
         phase_change, expansion, statistical_error and systematic_error (time); the diameter, the
-        slope with its systematic error and the number of missing samples.
+        slope with its systematic error and the number of missing samples; the series itself, as it
+        was measured: measured_phase and, where it is known, measured_phase_error (time).
 
     Raises
     ------
@@ -150,6 +151,9 @@ def series_expansion(config: Config, series: Series, calibration: xr.Dataset) ->
     found = expansion(change.phase, settings.diameter, calibration, change.error)
     at = sensitivity_at(settings.diameter, calibration)
     missing = np.where(np.isfinite(change.phase), 0.0, np.nan)
+    measured = {"measured_phase": ("time", series.phase)}
+    if series.phase_error is not None:
+        measured["measured_phase_error"] = ("time", series.phase_error)
     return make(
         "expansion",
         config,
@@ -163,10 +167,26 @@ def series_expansion(config: Config, series: Series, calibration: xr.Dataset) ->
             "fixed_focus_phase_slope": at.slope,
             "fixed_focus_phase_slope_standard_error": at.standard_error,
             "samples_missing": int(np.isnan(change.phase).sum()),
+            **measured,
         },
         {"time": series.time},
         __name__,
     )
+
+
+def series_in(found: xr.Dataset) -> xr.Dataset:
+    """Give the measured series that an expansion records, as `read_series` reads it from netCDF.
+
+    Raises
+    ------
+    DatasetError
+        If it records none, as those of octsim 0.1.0.
+    """
+    names = {f"measured_{name}": name for name in ("phase", "phase_error")}
+    held = {name: plain for name, plain in names.items() if name in found}
+    if "phase" not in held.values():
+        raise DatasetError("its measured series is not recorded in it")
+    return found[list(held)].rename(held).drop_attrs(deep=False)
 
 
 def summary(found: xr.Dataset) -> str:

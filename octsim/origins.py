@@ -1,6 +1,5 @@
 """What two runs were made from, and with: which keys of the config and which versions differ."""
 
-import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -9,6 +8,7 @@ import xarray as xr
 
 from octsim.config import Config
 from octsim.grid import as_text
+from octsim.schema import printable, recorded_environment
 
 NOT_RECORDED = "not recorded"
 
@@ -80,23 +80,13 @@ def _versions(stage: str, file: Path) -> dict[str, str]:
     # as it stands in the file, and not as it is read
     with xr.open_dataset(file, engine="netcdf4", decode_cf=False) as dataset:
         attributes = dataset.attrs
-    try:
-        environment = json.loads(attributes.get("environment", "{}"))
-    except (TypeError, ValueError):
-        environment = None
-    libraries = environment if isinstance(environment, dict) else {}
     found = {
         "octsim": attributes.get("octsim_version", NOT_RECORDED),
         "schema": attributes.get("schema_version", 0),
         f"{_SOURCES}{stage}": attributes.get("source_digest", NOT_RECORDED),
-        **libraries,
     }
-    return {_printable(name): _printable(version) for name, version in found.items()}
-
-
-def _printable(text: object) -> str:
-    """Give what a file says as a part of a line, whatever it holds."""
-    return "".join(letter if letter.isprintable() else " " for letter in str(text))
+    libraries = recorded_environment(attributes) or {}
+    return {name: printable(version) for name, version in found.items()} | libraries
 
 
 def _joined(versions: Mapping[str, str]) -> dict[str, str]:

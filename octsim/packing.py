@@ -10,10 +10,10 @@ from octsim import zipped
 from octsim.config import Config
 from octsim.crate import METADATA, description_of, metadata, title_of
 from octsim.crate import remarks as asked_for
+from octsim.datasets import opened
 from octsim.errors import ArchiveError, DatasetError
 from octsim.files import reason, whole
-from octsim.inventory import README, Item, items, readme, remarks
-from octsim.reading import differing
+from octsim.inventory import README, Item, Made, items, readme, remarks
 from octsim.runs import Run, run_in
 from octsim.sums import SUMS, digest, pieces_of, written
 from octsim.zipped import Member
@@ -55,33 +55,35 @@ def pack(folder: Path, config: Config, file: Path | None = None) -> Packed:
         If the archive can't be written; what stood there before is still there.
     """
     run = _run_of(folder, config)
+    if file is None and (folder / SUMS).exists():
+        raise ArchiveError(f"{folder}: is an unpacked archive, which stays as it is; give --file")
     file = file or folder / f"{config.run}.zip"
     try:
-        members = _members(run, config)
+        holds, made = items(run, config)
+        members = _members(holds, made, config)
     except OSError as error:
         raise ArchiveError(f"{error.filename or folder}: can't be read ({reason(error)})") from None
     with whole(file) as temporary, temporary.open("w+b") as stream:
         zipped.write(stream, members)
-    said = [*asked_for(config.archive), *(f"{folder}: {one}" for one in remarks(run, config))]
+    told = remarks(run, config, holds, made)
+    said = [*asked_for(config.archive), *(f"{folder}: {one}" for one in told)]
     return Packed(file, len(members), file.stat().st_size, tuple(said))
 
 
 def _run_of(folder: Path, config: Config) -> Run:
     """Give a folder's run; refuse datasets that don't follow from the config."""
     run = run_in(folder)
+    if run.config.run != config.run:
+        raise DatasetError(f"{folder}: of the run {run.config.run}, not of {config.run}; name that")
     for stage, file in run.datasets.items():
-        differ = differing(stage, config, run.config.to_dict())
-        if differ or run.config.run != config.run:
-            raise DatasetError(
-                f"{file}: made from another config (its {', '.join(differ or ['run'])} differ); "
-                "run again to make it anew, or move it away"
-            )
+        with opened(file, stage, config):
+            pass  # it says what it is not
     return run
 
 
-def _members(run: Run, config: Config) -> list[Member]:
-    """Give all that is to be packed, with its sums."""
-    holds, made = items(run, config)
+def _members(given: list[Item], made: Mapping[str, Made], config: Config) -> list[Member]:
+    """Give all that is to be packed: what there is, what describes it, and the sums."""
+    holds = list(given)
     title, described = title_of(config.archive, config.run), description_of(config.archive)
     about = "metadata of this archive (RO-Crate)"
     told = [

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from octsim.config import Config
 from octsim.datasets import opened
 from octsim.errors import DatasetError
+from octsim.gallery import STAGES, TARGETS
 from octsim.reading import differing
 from octsim.schema import recorded_config
 
@@ -26,7 +27,7 @@ class Run(NamedTuple):
 
 
 def run_in(folder: Path) -> Run:
-    """Give the run whose datasets stand in a folder.
+    """Give the run whose datasets stand in a folder; other files there are none of it.
 
     Parameters
     ----------
@@ -38,15 +39,20 @@ def run_in(folder: Path) -> Run:
     DatasetError
         If the folder has no datasets, one of them can't be read, or they are of different configs.
     """
-    datasets = {file.stem: file for file in sorted(folder.glob("*.nc"))}
+    known = {stage: folder / f"{stage}.nc" for stage in sorted((*STAGES, *TARGETS))}
+    datasets = {stage: file for stage, file in known.items() if file.is_file()}
     if not datasets:
         raise DatasetError(f"{folder}: no datasets; give a folder as results/thesis")
     configs: dict[str, Config] = {}
     for stage, file in datasets.items():
         with opened(file, stage) as dataset:
             configs[stage] = Config.model_validate(recorded_config(dataset.attrs))
-    figures = tuple(sorted(path for path in (folder / FIGURES).glob("*") if path.is_file()))
+    figures = tuple(sorted(path for path in (folder / FIGURES).glob("*") if _is_plain(path)))
     return Run(_common(configs, datasets), datasets, figures)
+
+
+def _is_plain(path: Path) -> bool:
+    return path.is_file() and not path.is_symlink() and not path.name.startswith(".")
 
 
 def _common(configs: Mapping[str, Config], datasets: Mapping[str, Path]) -> Config:

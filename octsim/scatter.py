@@ -1,6 +1,7 @@
 """A stage scattered over several jobs, each with a share of its blocks, and gathered again."""
 
 import json
+import math
 import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -14,12 +15,12 @@ from numpy.typing import NDArray
 
 from octsim.config import Config
 from octsim.errors import DatasetError
-from octsim.estimates import estimate, point_cost
+from octsim.estimates import point_cost
 from octsim.files import reason, whole
-from octsim.grid import Combination
+from octsim.grid import Combination, combinations
 from octsim.layout import Layout, points_per_block
 from octsim.parts import Part, Stream, arrays
-from octsim.reading import differing
+from octsim.reading import differing, keys_behind
 
 Block = tuple[Combination, slice]
 SCATTERED = ("focus_scan", "focus_sweep", "detections")
@@ -36,15 +37,24 @@ class Share(NamedTuple):
     of: int = 1
     """How many there are."""
 
-    def of_points(self, layout: Layout) -> list[Block]:
-        """Give this share's blocks of a stage whose points are traced one by one."""
-        return self.among(layout.blocks(lambda config: points_per_block(*point_cost(config))))
+    def blocks(self, layout: Layout) -> list[Block]:
+        """Give this share's blocks of a stage that traces."""
+        stage = layout.stage
+        every = layout.blocks(lambda config: _work(stage, config).together)
+        return self.among(every, lambda config: _work(stage, config).seconds)
 
-    def among(self, blocks: Iterable[Block]) -> list[Block]:
-        """Give the blocks of this share: neighbours, and about as much to trace as any other's."""
+    def among(self, blocks: Iterable[Block], seconds: Callable[[Config], float]) -> list[Block]:
+        """Give the blocks of this share: neighbours, and about as much to trace as any other's.
+
+        Parameters
+        ----------
+        blocks : iterable of Block
+            All there are.
+        seconds : callable
+            Processor time of a point of a config.
+        """
         every = list(blocks)
-        seconds = [point_cost(at.config).seconds * (span.stop - span.start) for at, span in every]
-        ends = [0.0, *accumulate(seconds)]
+        ends = [0.0, *accumulate(seconds(at.config) * _length(span) for at, span in every)]
         # a block is in the share that its middle is in
         middles = (0.5 * (begin + end) / ends[-1] for begin, end in pairwise(ends))
         return [
@@ -54,6 +64,32 @@ class Share(NamedTuple):
         ]
 
 
+class _Work(NamedTuple):
+    """What a stage has to do at a plain config."""
+
+    points: int
+    """Points along the dimension that its blocks are cut from."""
+    seconds: float
+    """Processor time of one of them."""
+    together: int
+    """How many are in a block."""
+
+
+def _work(stage: str, config: Config) -> _Work:
+    size, seconds = point_cost(config)
+    count, each = {
+        "focus_scan": (config.focus_scan.focus.num, 1),
+        # a diameter's foci are one row of the dataset
+        "focus_sweep": (config.focus_law.diameters.num, config.focus_law.fraction.num),
+        "detections": (config.sweep.diameters.num, 1),
+    }[stage]
+    return _Work(count, each * seconds, points_per_block(each * size, each * seconds))
+
+
+def _length(span: slice) -> int:
+    return int(span.stop - span.start)
+
+
 WHOLE = Share()
 """All of a stage, in one job."""
 
@@ -61,12 +97,19 @@ WHOLE = Share()
 def shares_of(config: Config) -> dict[str, int]:
     """Give how many jobs each stage that traces is scattered over.
 
-    They are of ``scatter.minutes`` of processor time each, by rates that are the same everywhere:
-    where a run is made does not change its jobs.
+    They are of ``scatter.minutes`` of processor time each, or of one block where that takes longer,
+    by rates that are the same everywhere: where a run is made does not change its jobs.
     """
-    most = 60 * config.scatter.minutes
-    stages = estimate(config, lambda _: None).stages
-    return {stage: max(1, round(stages[stage].cpu_seconds / most)) for stage in SCATTERED}
+    return {stage: _shares(stage, config) for stage in SCATTERED}
+
+
+def _shares(stage: str, config: Config) -> int:
+    seconds, blocks = 0.0, 0
+    for at in combinations(config, *keys_behind(stage, config)):
+        work = _work(stage, at.config)
+        seconds += work.points * work.seconds
+        blocks += math.ceil(work.points / work.together)
+    return max(1, min(round(seconds / (60 * config.scatter.minutes)), blocks))
 
 
 def write_share(

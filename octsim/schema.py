@@ -40,8 +40,24 @@ def recorded_config(attributes: Mapping[str, Any]) -> dict[str, Any]:
         return Config.model_validate(merge(Config().to_dict(), recorded)).to_dict()
     except ValidationError as error:
         raise ValueError(f"its config: {explain(error.errors()[0])}") from None
-    except (KeyError, TypeError, AttributeError, ValueError):
+    except (KeyError, TypeError, AttributeError, ValueError, RecursionError):
         raise ValueError("it has no config") from None
+
+
+def recorded_environment(attributes: Mapping[str, Any]) -> dict[str, str] | None:
+    """Give the versions that a dataset's attributes say it was computed with; None without any."""
+    try:
+        found = json.loads(attributes["environment"])
+    except (KeyError, TypeError, ValueError, RecursionError):
+        return None
+    if not isinstance(found, dict):
+        return None
+    return {printable(name): printable(version) for name, version in found.items()}
+
+
+def printable(text: object) -> str:
+    """Give what a file says as a part of a line, whatever it holds."""
+    return "".join(letter if letter.isprintable() else " " for letter in str(text))[:200]
 
 
 def upgraded(dataset: xr.Dataset, path: Path) -> xr.Dataset:
@@ -61,9 +77,9 @@ def upgraded(dataset: xr.Dataset, path: Path) -> xr.Dataset:
     """
     try:
         number = int(dataset.attrs.get("schema_version", 0))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         number = SCHEMA + 1
-    by = str(dataset.attrs.get("octsim_version", "of an unknown version"))
+    by = printable(dataset.attrs.get("octsim_version", "of an unknown version"))
     if number > SCHEMA:
         raise DatasetError(
             f"{path}: written by octsim {by}, as schema {number}; this octsim reads up to schema "

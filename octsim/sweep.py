@@ -145,7 +145,7 @@ def _detected(
         diameters = layout.own[at.position]["diameter"][1][span]
         return ((trace_at, d, z) for d, z in zip(diameters.tolist(), heights.tolist(), strict=True))
 
-    blocks = share.of_points(layout)
+    blocks = share.blocks(layout)
     for (at, span), found in each_block(lambda p: p[0](p[1], p[2]), blocks, points_of, threads):
         variables = _light_variables(found, focus[at.position][span])
         if "outcome" in layout.own[at.position]:

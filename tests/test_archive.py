@@ -80,7 +80,9 @@ def test_an_archive_holds_the_run_and_what_explains_it(folder: Path) -> None:
     assert "fourier.nc" not in names_in(packed.file)
     assert "fourier.nc" in goes_without
     assert "spectra.nc" not in goes_without
-    assert left_out == f"{folder}: left out, as no figures of this run: mine.png"
+    assert (
+        left_out == f"{folder}: left out, as no datasets or figures of this run: figures/mine.png"
+    )
 
 
 def test_a_package_that_is_no_checkout_has_no_lock_and_says_so(
@@ -260,7 +262,7 @@ def test_only_into_a_folder_that_is_empty(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "used").mkdir()
     (tmp_path / "used" / "notes").write_text("mine")
     for place in (tmp_path / "used", tmp_path / "used" / "notes", tmp_path / "empty"):
-        with pytest.raises(octsim.ArchiveError, match="not an empty folder; name another"):
+        with pytest.raises(octsim.FileError, match="not an empty folder; give one that is"):
             unpack(file, place)
     assert [one.name for one in (tmp_path / "used").iterdir()] == ["notes"]
 
@@ -366,23 +368,50 @@ def test_the_metadata_is_an_ro_crate(folder: Path, tmp_path: Path) -> None:
     assert ROCrate(out).root_dataset["name"] == ABOUT["title"]  # other tools read it
 
 
-def test_a_measured_series_goes_with_its_expansion(
-    tmp_path: Path, calibrated: xr.Dataset, monkeypatch: pytest.MonkeyPatch
+def test_no_file_is_packed_but_those_of_the_run(folder: Path, tmp_path: Path) -> None:
+    """An expansion holds its series; what its config names as one may be anybody's."""
+    secret = tmp_path / "secret"
+    secret.write_text("a key")
+    (folder / "figures" / "figure_6.svg").unlink()
+    (folder / "figures" / "figure_6.svg").symlink_to(secret)
+    (folder / "figures" / "figure_6.pdf").write_text("mine")
+    shutil.copy(folder / "spectra.nc", folder / "spectra_backup.nc")
+    (folder / ".spectra.partial.nc").touch()
+    config = octsim.load_config(config_of(folder).to_dict())
+    named = octsim.load_config(config.to_dict(), {"expansion": {"series": str(secret)}})
+    packed = pack(folder, named)
+    with zipfile.ZipFile(packed.file) as archive:
+        names = archive.namelist()
+    assert "figures/figure_6.png" in names
+    assert not {"figures/figure_6.svg", "figures/figure_6.pdf", "spectra_backup.nc"} & set(names)
+    assert b"a key" not in packed.file.read_bytes()
+    (left,) = (said for said in packed.remarks if "left out" in said)
+    for name in ("figures/figure_6.svg", "figures/figure_6.pdf", "spectra_backup.nc"):
+        assert name in left
+
+
+def test_an_unpacked_archive_stays_as_it_is_and_packs_to_the_same_bytes(
+    folder: Path, tmp_path: Path
 ) -> None:
-    monkeypatch.chdir(tmp_path)
-    series = Path("my phases.csv")
-    series.write_text("time,phase\n" + "".join(f"{t},{0.001 * t}\n" for t in range(30)))
-    config = octsim.load_config(
-        json.loads(calibrated.attrs["config"]), {"expansion": {"series": str(series)}}
-    )
-    found = octsim.series_expansion(config, octsim.read_series(series), calibrated)
-    write(calibrated, tmp_path / "run" / "calibration.nc")
-    write(found, tmp_path / "run" / "expansion.nc")
-    file = pack(tmp_path / "run", config).file
+    file = pack(folder, config_of(folder)).file
     unpack(file, tmp_path / "out")
-    assert (tmp_path / "out" / "inputs" / "series.csv").read_bytes() == series.read_bytes()
-    archived = octsim.load_config(tmp_path / "out" / "config.yaml")
-    assert archived.expansion.series == "inputs/series.csv"
-    series.unlink()
-    with pytest.raises(octsim.ArchiveError, match=r"my phases\.csv: not there, but expansion\.nc"):
-        pack(tmp_path / "run", config)
+    config = octsim.load_config(tmp_path / "out" / "config.yaml")
+    with pytest.raises(octsim.ArchiveError, match="is an unpacked archive, which stays as it is"):
+        pack(tmp_path / "out", config)
+    again = pack(tmp_path / "out", config, tmp_path / "again.zip").file
+    assert again.read_bytes() == file.read_bytes()
+    verify(tmp_path / "out")
+
+
+def test_data_of_other_libraries_is_said_as_the_lock_is_not_theirs(folder: Path) -> None:
+    assert not [said for said in pack(folder, config_of(folder)).remarks if "lock" in said]
+    dataset = xr.load_dataset(folder / "spectra.nc")
+    write(dataset.assign_attrs(environment="{"), folder / "spectra.nc")
+    (said,) = (one for one in pack(folder, config_of(folder)).remarks if "lock" in one)
+    assert "spectra was computed with other libraries" in said
+
+
+def test_an_orcid_id_is_of_one_person() -> None:
+    twice = [{"name": name, "orcid": "0000-0002-1825-0097"} for name in ("A", "B")]
+    with pytest.raises(octsim.ConfigError, match=r"archive\.creators: .*is given for two of them"):
+        octsim.load_config({"archive": {"creators": twice}})

@@ -499,6 +499,35 @@ def test_the_exit_status_tells_the_same_from_different_and_from_wrong(
         assert capsys.readouterr().err.count("\n") == 1
 
 
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_slope_that_is_not_finite_is_told_and_drawn_as_far_as_it_is(
+    value: float, tiny: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "odd"
+    shutil.copytree(tiny, folder)
+    for places in (slice(0, 1), slice(None)):
+        dataset = xr.load_dataset(folder / "phase_slope.nc")
+        dataset["phase_slope"][places] = value
+        write(dataset, folder / "phase_slope.nc")
+        assert main(["compare", str(tiny), str(folder)]) == 1
+        assert "phase_slope.phase_slope" in capsys.readouterr().out
+        assert (tmp_path / "compare_tiny_tiny.png").stat().st_size > 10_000
+
+
+def test_what_a_hostile_file_says_of_its_sizes_and_libraries_is_one_line(
+    tiny: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "hostile"
+    shutil.copytree(tiny, folder)
+    dataset = xr.load_dataset(folder / "detections.nc")
+    dataset["rays_detected"][:] = 10**6
+    write(dataset.assign_attrs(environment="[" * 100_000), folder / "detections.nc")
+    assert main(["compare", str(folder), str(folder)]) == 2
+    said = capsys.readouterr()
+    assert "detections.nc: can't be read" in said.err.replace(" or ", ": ")
+    assert said.err.count("\n") == 1
+
+
 def test_the_figure_of_a_grid_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

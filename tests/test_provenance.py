@@ -84,7 +84,7 @@ def test_a_changed_formula_changes_the_digest_of_what_uses_it(
 def test_a_script_s_digest_covers_the_code_it_shares_with_other_scripts(copy: Path) -> None:
     script = copy / "workflow" / "scripts" / "spectra.py"
     before = source_digest(script)
-    edit(copy / "workflow" / "scripts" / "job.py", "whence.from_cache}", "whence.from_cache + 1}")
+    edit(copy / "workflow" / "scripts" / "job.py", "points.from_cache}", "points.from_cache + 1}")
     assert digest_in(copy, f"Path({str(script)!r})") != before
 
 

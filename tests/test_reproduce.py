@@ -2,7 +2,6 @@
 
 import json
 import os
-import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -35,7 +34,7 @@ CALIBRATED: dict[str, Any] = {
     },
     "expansion": {"series": "measured/phases.csv", "rest": 3},
 }
-SERIES = "time,phase\n0,0\n1,0.001\n2,-0.001\n3,0.01\n"
+SERIES = "time,phase,phase_error\n0,0,1e-3\n1,1e-3,1e-3\n2,-1e-3,1e-3\n3,0.01,1e-3\n"
 
 
 def reproduce(file: Path, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -237,7 +236,7 @@ def test_a_file_that_is_none_of_ours_is_one_line_and_nothing_is_made(
         (tmp_path / "none.nc", again, "none.nc: not there"),
         (later, again, "written by octsim 9.1, as schema 2"),
         (stage, again, "of the stage '../../x', which this octsim lacks"),
-        (tiny, tmp_path / "full", "full: not empty"),
+        (tiny, tmp_path / "full", "full: not an empty folder"),
     ):
         assert message in said(reproduce(file, folder))
     assert files_in(tmp_path) == before
@@ -261,27 +260,31 @@ def test_a_run_that_fails_is_one_line_with_its_reason_and_its_log(
     assert line.endswith(f"see {tmp_path / 'again' / 'snakemake.log'}")
 
 
-def test_a_measured_series_is_taken_from_beside_the_datasets_or_asked_for(tmp_path: Path) -> None:
+def test_an_expansion_is_made_anew_from_the_series_that_it_holds(tmp_path: Path) -> None:
     config = octsim.load_config(TINY, CALIBRATED)
-    folder = tmp_path / "run"
-    (folder / "inputs").mkdir(parents=True)
-    series = folder / "inputs" / "phases.csv"
-    series.write_text(SERIES)
+    file = tmp_path / "expansion.nc"
     # not this run's own calibration, so the numbers that follow from one differ
     names = ("fixed_focus_phase_slope", "fixed_focus_phase_slope_standard_error", "phase_curvature")
     diameter = config.calibration.diameters.values()
     table = {n: ("diameter", np.full(8, v)) for n, v in zip(names, (20.0, 1.0, 0.0), strict=True)}
+    series = tmp_path / "phases.csv"
+    series.write_text(SERIES)
     calibration = xr.Dataset(table, {"diameter": diameter})
-    found = octsim.series_expansion(config, octsim.read_series(series), calibration)
-    write(found, folder / "expansion.nc")
-    done = reproduce(folder, tmp_path / "again", "--cores", "1")
+    write(octsim.series_expansion(config, octsim.read_series(series), calibration), file)
+    series.unlink()
+    done = reproduce(file, tmp_path / "again", "--cores", "1")
     assert done.returncode == 1, done.stdout + done.stderr
-    assert "  expansion.series: measured/phases.csv -> inputs/phases.csv\n" in done.stdout
+    assert "  expansion.series: measured/phases.csv -> series.nc\n" in done.stdout
     marked = {line.split()[1] for line in done.stdout.splitlines() if line.startswith("*")}
     assert marked == {"expansion", "statistical_error", "systematic_error", *names[:2]}
-    assert (tmp_path / "again" / "inputs" / "phases.csv").read_text() == SERIES
-    for file in (folder / "expansion.nc", folder):
-        shutil.rmtree(folder / "inputs", ignore_errors=True)
-        line = said(reproduce(file, tmp_path / "none"))
-        assert "measured series measured/phases.csv is not recorded" in line
+    told = dict(line.split()[-2:] for line in done.stdout.splitlines() if "measured_" in line)
+    assert told == {"measured_phase": "0", "measured_phase_error": "0"}
+    unrecorded = rewritten(file, tmp_path / "again" / "results", _without_series)
+    assert "expansion.nc: its measured series is not recorded in it; leave" in said(
+        reproduce(unrecorded, tmp_path / "none")
+    )
     assert not (tmp_path / "none").exists()
+
+
+def _without_series(dataset: xr.Dataset) -> None:
+    del dataset["measured_phase"]

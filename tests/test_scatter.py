@@ -75,7 +75,10 @@ def test_every_block_is_in_one_share_in_order(
         (Combination((row,), {}, configs[n]), slice(0, size))
         for row, (size, n) in enumerate(zip(sizes, rays, strict=False))
     ]
-    shares = [Share(number, count).among(blocks) for number in range(1, count + 1)]
+    shares = [
+        Share(number, count).among(blocks, lambda config: 1e-6 * config.tracing.rays)
+        for number in range(1, count + 1)
+    ]
     assert [block for share in shares for block in share] == blocks
 
 
@@ -86,19 +89,20 @@ def test_shares_take_about_as_long_as_each_other_and_as_was_asked_for() -> None:
         {"grid": {"tracing.rays": [1000, 30000]}, "budget": {"cpu_hours": 10}},
         {"scatter": {"minutes": 0.2}},
     )
-    seconds = sum(9 * (1.3e-4 + 8.8e-7 * rays) * 501 for rays in (1000, 30000))
+    total = sum(9 * (1.3e-4 + 8.8e-7 * rays) * 501 for rays in (1000, 30000))
     count = shares_of(config)["detections"]
-    assert count == pytest.approx(seconds / 12, abs=0.51)
+    assert count == pytest.approx(total / 12, abs=0.51)
     layout: Layout = octsim.detections.stream(config).layout
     blocks = list(layout.blocks(lambda _: 3))
+
+    def seconds(config: octsim.Config) -> float:
+        return 1.3e-4 + 8.8e-7 * config.tracing.rays
+
     taken = [
-        sum(
-            3 * (1.3e-4 + 8.8e-7 * at.config.tracing.rays)
-            for at, _ in Share(n, count).among(blocks)
-        )
-        for n in range(1, count + 1)
+        sum(3 * seconds(at.config) for at, _ in Share(number, count).among(blocks, seconds))
+        for number in range(1, count + 1)
     ]
-    assert sum(taken) == pytest.approx(seconds)
+    assert sum(taken) == pytest.approx(total)
     assert np.ptp(taken) < 0.2  # s, of 12
 
 
@@ -106,8 +110,22 @@ def test_what_takes_less_than_asked_for_is_one_job() -> None:
     assert set(shares_of(octsim.load_config({})).values()) == {1}
 
 
+@pytest.mark.parametrize("grid", GRIDS)
+@pytest.mark.parametrize("stage", STAGES)
+def test_there_are_no_more_shares_than_blocks(stage: str, grid: str) -> None:
+    config = octsim.load_config(TINY, {"grid": GRIDS[grid]}, {"scatter": {"minutes": 1e-6}})
+    layout = STAGES[stage](config, WHOLE).layout
+    count = shares_of(config)[stage]
+    assert count == len(WHOLE.blocks(layout))
+    rows = {"focus_law": {"fraction": {"num": 3000}}, "tracing": {"rays": 10**7}}
+    of = shares_of(octsim.load_config(rows))["focus_sweep"]
+    assert of == 9  # a diameter's foci stay together, however long they take
+
+
 def test_jobs_do_not_depend_on_what_was_measured_before(tmp_path: Path) -> None:
-    config = octsim.load_config(TINY, {"scatter": {"minutes": 1e-5}})
+    config = octsim.load_config(
+        TINY, {"scatter": {"minutes": 1e-5}, "grid": {"scene.gap": ["5 nm", "9 nm"]}}
+    )
     other = octsim.load_config(config.to_dict(), {"cache": {"file": str(tmp_path / "points")}})
     assert shares_of(config) == shares_of(other)
     assert min(shares_of(config).values()) > 1

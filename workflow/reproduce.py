@@ -8,38 +8,36 @@ checkout's, and all that is written stands in the folder.
 
 import argparse
 import json
-import shutil
 import subprocess
 import sys
 import warnings
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
+import xarray as xr
+
+from octsim.command import Parser
 from octsim.compare_command import tolerance
 from octsim.config import Cache
 from octsim.contrast import TOLERANCE, contrast
 from octsim.contrast_text import lines
-from octsim.errors import DatasetError, FileError, OctsimError, OctsimWarning
-from octsim.files import require_folder, whole
+from octsim.datasets import read, write
+from octsim.errors import DatasetError, OctsimError, OctsimWarning
+from octsim.files import require_empty, require_folder, whole
 from octsim.loading import load_config
-from octsim.recorded import Recorded, located, recorded
+from octsim.nanometres import series_in
+from octsim.recorded import Recorded, recorded
 from octsim.runs import run_in
 
 ROOT = Path(__file__).resolve().parents[1]
-INPUTS = "inputs"
-"""Folder of what a run was given besides its config, in an archive."""
+SERIES = "series.nc"
+"""A measured series that an expansion was made from, in the folder."""
 LOG = "snakemake.log"
-
-
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        """Say in one line what is wrong with the arguments."""
-        self.exit(2, f"octsim: {message}; `{self.prog} --help` says what there is\n")
 
 
 def main() -> int:
     """Reproduce what the arguments name; give the exit status."""
-    parser = _Parser(
+    parser = Parser(
         description="Make anew what a run, an archive or a dataset records, and compare.",
         epilog="Exit status: 0 if every number is within the tolerance, 1 if one is not, 2 if "
         "nothing could be compared: wrong arguments, a file that can't be read, a failed run.",
@@ -52,10 +50,9 @@ def main() -> int:
     given = parser.parse_args()
     warnings.simplefilter("ignore", OctsimWarning)  # the workflow says these
     try:
-        with located(given.file) as place, recorded(place) as found:
-            then = _chosen(found, given.only)._replace(name=str(given.file))
-            inputs = place / INPUTS if place.is_dir() else None
-            now = reproduced(then, inputs, given.folder.absolute(), given.cores)
+        with recorded(given.file) as found:
+            then = _chosen(found, given.only)
+            now = reproduced(then, given.folder.absolute(), given.cores)
             result = contrast(then, now, given.tolerance)
     except OctsimError as error:
         print(f"octsim: {error}", file=sys.stderr)
@@ -81,7 +78,7 @@ def _chosen(found: Recorded, only: list[str] | None) -> Recorded:
     return found._replace(datasets=kept)
 
 
-def reproduced(then: Recorded, inputs: Path | None, folder: Path, cores: int) -> Recorded:
+def reproduced(then: Recorded, folder: Path, cores: int) -> Recorded:
     """Make the datasets that are recorded anew in a folder, from their config alone.
 
     Raises
@@ -89,17 +86,16 @@ def reproduced(then: Recorded, inputs: Path | None, folder: Path, cores: int) ->
     OctsimError
         If the config is refused, something that it needs is not recorded, or the run fails.
     """
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise FileError(f"{folder}: not empty; give a folder that is, or one that is not there yet")
-    config, series = _harmless(then, inputs)
+    require_empty(folder)
+    config = _harmless(then)
     load_config(config)
+    series = _series(then.datasets["expansion"]) if "expansion" in then.datasets else None
     require_folder(folder)
     file = folder / "config.json"
     with whole(file) as partial:
         partial.write_text(json.dumps(config, indent=1) + "\n", encoding="utf-8")
-    if series:
-        (folder / INPUTS).mkdir()
-        shutil.copyfile(series, folder / INPUTS / series.name)
+    if series is not None:
+        write(series, folder / SERIES)
     results = Path("results") / then.config.run
     print(f"octsim: making {', '.join(then.datasets)} in {folder / results}", file=sys.stderr)
     command = [
@@ -117,26 +113,19 @@ def reproduced(then: Recorded, inputs: Path | None, folder: Path, cores: int) ->
     return Recorded(str(folder / results), run.config, made, whole=True)
 
 
-def _harmless(then: Recorded, inputs: Path | None) -> tuple[dict[str, Any], Path | None]:
-    """Give a config that names no file outside the folder, and the measured series it needs."""
+def _harmless(then: Recorded) -> dict[str, Any]:
+    """Give a config that names no file outside the folder."""
     config: dict[str, Any] = then.config.to_dict() | {"cache": Cache().model_dump(mode="json")}
-    named, config["expansion"]["series"] = config["expansion"]["series"], None
-    if "expansion" not in then.datasets or named is None:
-        return config, None
-    series = _series(named, inputs) if inputs else None
-    if series is None:
-        raise DatasetError(
-            f"{then.datasets['expansion']}: its measured series {named} is not recorded beside it; "
-            "give an archive of the run, or leave expansion out by --only"
-        )
-    config["expansion"]["series"] = f"{INPUTS}/{series.name}"
-    return config, series
+    config["expansion"]["series"] = SERIES if "expansion" in then.datasets else None
+    return config
 
 
-def _series(named: str, inputs: Path) -> Path | None:
-    """Give the archived series; one whose name is none for an archive has another there."""
-    places = (inputs / Path(named).name, *sorted(inputs.glob("series.*")))
-    return next((place for place in places if place.is_file() and not place.is_symlink()), None)
+def _series(expansion: Path) -> xr.Dataset:
+    """Give the measured series that an expansion was made from."""
+    try:
+        return series_in(read(expansion, "expansion"))
+    except DatasetError as error:
+        raise DatasetError(f"{expansion}: {error}; leave expansion out by --only") from None
 
 
 def _said(log: Path) -> str:

@@ -44,8 +44,10 @@ def figure_contrast(slopes: tuple[xr.Dataset, xr.Dataset], names: tuple[str, str
         )  # fmt: skip
         shown += [slope.values, ideal.values]
     values = np.concatenate(shown)
-    margin = 0.1 * max(float(np.nanmax(values) - np.nanmin(values)), 0.1)
-    axes.set_ylim(np.nanmin(values) - margin, np.nanmax(values) + margin)
+    finite = values[np.isfinite(values)]
+    if finite.size:
+        margin = 0.1 * max(float(np.ptp(finite)), 0.1)
+        axes.set_ylim(finite.min() - margin, finite.max() + margin)
     axes.set_xlabel(label(slopes[0]["diameter"]))
     axes.set_ylabel(label(slopes[0]["phase_slope"], "phase slope"))
     axes.set_title("Phase slope of two runs")
