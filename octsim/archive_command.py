@@ -16,7 +16,10 @@ def add(commands: Any) -> None:
     parser.add_argument("folder", type=Path, help="of the run, as results/thesis")
     parser.add_argument("--file", type=Path, help="to write (default: <folder>/<run>.zip)")
     parser.add_argument(
-        "--config", type=Path, help="whose section archive has title, creators, license and date"
+        "--config",
+        type=Path,
+        help="whose section archive has title, creators, license and date (default: that of the "
+        "archive which is replaced, where there is one)",
     )
     parser.set_defaults(do=archive, failed=1)
     purpose = "check that an archive is as it was packed, to the last bit"
@@ -35,13 +38,15 @@ def archive(given: Namespace) -> int:
     from octsim.config import Config
     from octsim.loading import load_config
     from octsim.overlays import merge, read_overlay
-    from octsim.packing import pack
+    from octsim.packing import pack, told_before
     from octsim.runs import run_in
 
     folder = given.folder.expanduser()
-    overlay = read_overlay(given.config.expanduser()) if given.config else {}
+    run = run_in(folder).config
+    file = given.file.expanduser() if given.file else folder / f"{run.run}.zip"
+    overlay = read_overlay(given.config.expanduser()) if given.config else told_before(file)
     said = load_config({key: part for key, part in overlay.items() if key == "archive"}).archive
-    data = merge(run_in(folder).config.to_dict(), {"archive": said.model_dump(mode="json")})
+    data = merge(run.to_dict(), {"archive": said.model_dump(mode="json")})
     packed = pack(folder, Config.model_validate(data), given.file and given.file.expanduser())
     for remark in packed.remarks:
         print(f"octsim: warning: {remark}", file=sys.stderr)

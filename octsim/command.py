@@ -1,6 +1,7 @@
 """The command `octsim`: its parser, and how it ends."""
 
 import argparse
+import os
 import sys
 from argparse import Namespace
 from collections.abc import Callable, Sequence
@@ -30,7 +31,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     do: Callable[[Namespace], int] = given.do
     try:
-        return do(given)
+        ended = do(given)
+        sys.stdout.flush()
+        return ended
+    except BrokenPipeError:  # who reads has seen enough, as head and less have
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
     except OctsimError as error:
         for line in str(error).splitlines():
             print(f"octsim: {line}", file=sys.stderr)

@@ -163,8 +163,9 @@ def _checked(
     """Refuse a dataset of another stage, config or time; give it as this octsim writes it."""
     found = dataset.attrs.get("stage")
     if not isinstance(found, str) or found != (stage or found):
-        what = f"octsim's dataset of the stage {stage}" if stage else "a dataset of octsim"
-        raise DatasetError(f"{path}: not {what}; {_remedy(path)}")
+        if stage is None:
+            raise DatasetError(f"{path}: not a dataset of octsim; give one that is")
+        raise DatasetError(f"{path}: not octsim's dataset of the stage {stage}; {_remedy(path)}")
     dataset = upgraded(dataset, path)
     if config is None:
         return dataset

@@ -126,14 +126,23 @@ def remarks(run: Run, config: Config, holds: list[Item], made: Mapping[str, Made
 
 
 def readme(
-    title: str, described: str, holds: list[Item], made: Mapping[str, Made], run: str
+    title: str, described: str, holds: list[Item], made: Mapping[str, Made], config: Config
 ) -> str:
     """Write what an archive's README.md says."""
+    given = config.archive
+    people = [
+        ", ".join(
+            part for part in (one.name, one.affiliation, one.orcid and _ORCID + one.orcid) if part
+        )
+        for one in given.creators
+    ]
+    by = "".join(f"- {person}\n" for person in people) + ("\n" if people else "")
     rows = "".join(f"| `{item.name}` | {item.about} |\n" for item in sorted(holds))
     versions = sorted({one.octsim_version for one in made.values()})
     return _README.format(
         title=title, described=described, rows=rows, versions=" and ".join(versions),
-        version=version("octsim"), run=run,
+        version=version("octsim"), run=config.run, by=by, license=given.license,
+        published=f", published {given.date}" if given.date else "",
     )  # fmt: skip
 
 
@@ -146,9 +155,12 @@ def _made(recorded: Mapping[str, Any]) -> Made:
     )
 
 
+_ORCID = "https://orcid.org/"
 _README = """# {title}
 
 {described}
+
+{by}Licence: {license}{published}.
 
 | file | what it is |
 | --- | --- |

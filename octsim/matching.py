@@ -49,8 +49,9 @@ def common_points(first: xr.Dataset, second: xr.Dataset) -> tuple[dict[str, Comm
     }
     if RAY not in common or RAGGED not in first or RAGGED not in second:
         return common, 0
-    if first[RAGGED].dims != second[RAGGED].dims:
-        return common, 0
+    if first[RAGGED].dims != second[RAGGED].dims:  # one is of a grid: no ray has its like
+        none = np.empty(0, np.int64)
+        return common | {RAY: Common(none, none, common[RAY].sizes)}, 0
     rays, uneven = _shared_rays(first, second, common)
     return common | {RAY: rays}, uneven
 

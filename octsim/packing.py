@@ -1,10 +1,13 @@
 """A run as one file for a data repository: what goes in, and how it is described."""
 
 import hashlib
+import zipfile
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
+
+import yaml
 
 from octsim import zipped
 from octsim.config import Config
@@ -13,7 +16,7 @@ from octsim.crate import remarks as asked_for
 from octsim.datasets import opened
 from octsim.errors import ArchiveError, DatasetError
 from octsim.files import reason, whole
-from octsim.inventory import README, Item, Made, items, readme, remarks
+from octsim.inventory import CONFIG, README, Item, Made, items, readme, remarks
 from octsim.runs import Run, run_in
 from octsim.sums import SUMS, digest, pieces_of, written
 from octsim.zipped import Member
@@ -70,6 +73,16 @@ def pack(folder: Path, config: Config, file: Path | None = None) -> Packed:
     return Packed(file, len(members), file.stat().st_size, tuple(said))
 
 
+def told_before(file: Path) -> Mapping[str, Any]:
+    """Give the config of an archive that is to be replaced; nothing if there is none to be read."""
+    try:
+        with zipfile.ZipFile(file) as archive:
+            found = yaml.safe_load(archive.read(CONFIG))
+    except (OSError, ValueError, KeyError, RuntimeError, zipfile.BadZipFile, yaml.YAMLError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
 def _run_of(folder: Path, config: Config) -> Run:
     """Give a folder's run; refuse datasets that don't follow from the config."""
     run = run_in(folder)
@@ -90,7 +103,7 @@ def _members(given: list[Item], made: Mapping[str, Made], config: Config) -> lis
         Item(README, "what each file is", b"", "text/markdown"),
         Item(METADATA, about, b"", "application/ld+json"),
     ]
-    text = readme(title, described, [*holds, *told], made, config.run)
+    text = readme(title, described, [*holds, *told], made, config)
     holds.append(told[0]._replace(source=text.encode()))
     measured = {item.name: (_size(item), digest(_pieces(item))) for item in holds}
     described_bytes = metadata(config.run, config.archive, holds, made, measured)

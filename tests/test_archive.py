@@ -415,3 +415,29 @@ def test_an_orcid_id_is_of_one_person() -> None:
     twice = [{"name": name, "orcid": "0000-0002-1825-0097"} for name in ("A", "B")]
     with pytest.raises(octsim.ConfigError, match=r"archive\.creators: .*is given for two of them"):
         octsim.load_config({"archive": {"creators": twice}})
+
+
+def test_who_made_the_data_is_in_the_readme_and_kept_when_packed_again(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    about = tmp_path / "about.yaml"
+    about.write_text(
+        "archive:\n  date: 2026-01-31\n  license: MIT\n  creators:\n"
+        "    - {name: Ada Ray, orcid: 0000-0002-1825-0097, affiliation: A {braced} place}\n"
+        "    - {name: Max Beam}\n".replace("A {braced} place", "'A {braced} place'")
+    )
+    assert main(["archive", str(folder), "--config", str(about)]) == 0
+    file = folder / "tiny.zip"
+    first = file.read_bytes()
+    with zipfile.ZipFile(file) as archive:
+        told = archive.read("README.md").decode()
+    assert (
+        "- Ada Ray, A {braced} place, https://orcid.org/0000-0002-1825-0097\n- Max Beam\n" in told
+    )
+    assert "Licence: MIT, published 2026-01-31." in told
+    assert main(["archive", str(folder)]) == 0
+    assert "archive.creators" not in capsys.readouterr().err
+    assert file.read_bytes() == first
+    file.write_bytes(b"not a zip")
+    assert main(["archive", str(folder)]) == 0
+    assert "archive.creators: not given" in capsys.readouterr().err

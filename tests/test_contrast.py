@@ -2,6 +2,8 @@
 
 import json
 import shutil
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -497,6 +499,21 @@ def test_the_exit_status_tells_the_same_from_different_and_from_wrong(
             main(["compare", str(tiny), str(tiny), *bad])
         assert caught.value.code == 2
         assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_rays_of_grids_with_other_keys_are_not_compared(tmp_path: Path) -> None:
+    one = make(tmp_path / "one", {"grid": {"scene.gap": ["5 nm", "20 nm"]}})
+    other = make(tmp_path / "other", {"grid": {"detector.core_diameter": ["4 um", "5 um"]}})
+    found = octsim.compare(one / "detections.nc", other / "detections.nc")
+    (dataset,) = found.datasets
+    rays = {v.name: v for v in dataset.variables if v.name in ("amplitude", "path_code")}
+    assert {variable.unlike for variable in rays.values()} == {"no ray in common"}
+
+
+def test_who_reads_the_first_lines_alone_sees_no_traceback(tiny: Path) -> None:
+    shell = f"'{sys.executable}' -m octsim compare '{tiny}' '{tiny}' --no-figure | true"
+    done = subprocess.run(shell, shell=True, capture_output=True, text=True, check=False)
+    assert done.stderr == ""
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])

@@ -2,8 +2,10 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -118,6 +120,28 @@ def test_an_archive_is_made_anew_and_compared_with_what_was_made(
     archive.write_bytes(body)
     assert "tiny.zip: " in said(reproduce(archive, tmp_path / "never"))
     assert not (tmp_path / "never").exists()
+
+
+def test_what_was_interrupted_goes_on_in_its_folder_and_no_other_does(
+    tiny: Path, tmp_path: Path
+) -> None:
+    file, folder = tiny / "focus_scan.nc", tmp_path / "again"
+    command = [sys.executable, str(ROOT / "workflow" / "reproduce.py"), str(file), str(folder)]
+    begun = subprocess.Popen(
+        command, start_new_session=True, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    until = time.monotonic() + 60
+    while not (folder / "snakemake.log").exists():
+        assert time.monotonic() < until
+        time.sleep(0.05)
+    os.killpg(begun.pid, signal.SIGINT)
+    _, told = begun.communicate()
+    assert begun.returncode == 130
+    assert told.splitlines()[-1] == "octsim: interrupted; the same command goes on from here"
+    assert "again: not an empty folder" in said(reproduce(tiny / "spectra.nc", folder))
+    done = reproduce(file, folder, "--cores", "1")
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_one_file_and_chosen_stages_are_made_anew_alone(tiny: Path, tmp_path: Path) -> None:

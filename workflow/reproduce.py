@@ -57,6 +57,9 @@ def main() -> int:
     except OctsimError as error:
         print(f"octsim: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print("octsim: interrupted; the same command goes on from here", file=sys.stderr)
+        return 130
     print(*lines(result), sep="\n")
     return int(result.differs)
 
@@ -86,18 +89,20 @@ def reproduced(then: Recorded, folder: Path, cores: int) -> Recorded:
     OctsimError
         If the config is refused, something that it needs is not recorded, or the run fails.
     """
-    require_empty(folder)
     config = _harmless(then)
     load_config(config)
     series = _series(then.datasets["expansion"]) if "expansion" in then.datasets else None
     require_folder(folder)
-    file = folder / "config.json"
+    file, text = folder / "config.json", json.dumps(config, indent=1) + "\n"
+    if not (file.is_file() and file.read_text(encoding="utf-8") == text):  # else it goes on there
+        require_empty(folder)
     with whole(file) as partial:
-        partial.write_text(json.dumps(config, indent=1) + "\n", encoding="utf-8")
+        partial.write_text(text, encoding="utf-8")
     if series is not None:
         write(series, folder / SERIES)
     results = Path("results") / then.config.run
-    print(f"octsim: making {', '.join(then.datasets)} in {folder / results}", file=sys.stderr)
+    made = f"octsim: making {', '.join(then.datasets)} in {folder / results}; {LOG} there tells"
+    print(made, file=sys.stderr)
     command = [
         sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile"),
         "--workflow-profile", str(ROOT / "profiles" / "default"), "--directory", str(folder),

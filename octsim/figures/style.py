@@ -19,6 +19,7 @@ PURPLE, VERMILION, SKY = "#CC79A7", "#D55E00", "#56B4E9"
 _COMPONENTS = (BLUE, ORANGE, PURPLE, VERMILION, SKY)
 _SYMBOLS = {"um": "µm", "um-1": "1/µm", "1": ""}
 _LOOK: Any = {
+    "axes.formatter.useoffset": False,  # ticks say what they are
     "axes.grid": True,
     "axes.spines.right": False,
     "axes.spines.top": False,
