@@ -300,6 +300,7 @@ def test_the_command_takes_what_it_says_of_the_run_from_a_config(
     assert main([*arguments, "--config", str(mine)]) == 0
     assert "archive.date" not in capsys.readouterr().err
     assert file.read_bytes() == pack(folder, config_of(folder)).file.read_bytes()
+    file.unlink()  # what is replaced is kept
     assert main(arguments) == 0
     said = capsys.readouterr().err.splitlines()
     assert said[0].startswith("octsim: warning: archive.date: not given, so 1980-01-01 stands")

@@ -139,7 +139,10 @@ def test_what_was_interrupted_goes_on_in_its_folder_and_no_other_does(
     _, told = begun.communicate()
     assert begun.returncode == 130
     assert told.splitlines()[-1] == "octsim: interrupted; the same command goes on from here"
-    assert "again: not an empty folder" in said(reproduce(tiny / "spectra.nc", folder))
+    other = rewritten(
+        file, tmp_path / "other", with_config(lambda config: config["scene"].update(gap="9 nm"))
+    )
+    assert "again: not an empty folder" in said(reproduce(other, folder))
     done = reproduce(file, folder, "--cores", "1")
     assert done.returncode == 0, done.stdout + done.stderr
 
