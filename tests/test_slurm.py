@@ -173,13 +173,14 @@ def test_a_scattered_stage_is_gathered_to_the_bits_of_one_job_whatever_becomes_o
     for name in ("here", "there"):
         (tmp_path / name).mkdir()
     here, there = Checkout(tmp_path / "here"), Checkout(tmp_path / "there")
-    here.run(GRID, "--cores", "2", target)
+    alone = merged(GRID, {"cache": {"gigabytes": 0}})  # a node's cache outlives these tests
+    here.run(alone, "--cores", "2", target)
     second = "snakemake.wildcards.get('number') == '2' and not Path('waits').exists()"
     at_start(
         there, "detections",
         f"[(Path('waits').touch(), time.sleep(300)) for _ in 'x' if {second}]",
     )  # fmt: skip
-    scattered = merged(GRID, {"scatter": {"minutes": 4.6e-5}})
+    scattered = merged(alone, {"scatter": {"minutes": 4.6e-5}})
     started = start(there, slurm, *PROFILE, target, overlay=scattered)
     waiting = caught(there, slurm, "waits", "results/grid/shares/detections-1-of-2.npz")
     subprocess.run(["scancel", waiting], env=slurm, check=True)
