@@ -25,7 +25,7 @@ from octsim.latest import begin, is_latest
 from octsim.loading import load_config
 from octsim.provenance import lock_file, source_digest
 from octsim.reading import keys_read, needs_law, parts_of
-from octsim.scatter import SCATTERED, shares_of
+from octsim.workload import SCATTERED, shares_of
 
 try:
     # the files themselves too, as snakemake's own reading lets a key stand twice

@@ -43,11 +43,12 @@ def archive(given: Namespace) -> int:
 
     folder = given.folder.expanduser()
     run = run_in(folder).config
-    file = given.file.expanduser() if given.file else folder / f"{run.run}.zip"
+    named = given.file and given.file.expanduser()
+    file = named or folder / f"{run.run}.zip"
     overlay = read_overlay(given.config.expanduser()) if given.config else told_before(file)
     said = load_config({key: part for key, part in overlay.items() if key == "archive"}).archive
     data = merge(run.to_dict(), {"archive": said.model_dump(mode="json")})
-    packed = pack(folder, Config.model_validate(data), given.file and given.file.expanduser())
+    packed = pack(folder, Config.model_validate(data), named)
     for remark in packed.remarks:
         print(f"octsim: warning: {remark}", file=sys.stderr)
     print(packed)

@@ -22,6 +22,19 @@ _RAY_MEMORY = 600.0  # bytes, of each ray of a spiral that two threads trace
 _SAMPLE_MEMORY = 1000.0  # bytes, of each sample of the spectra in a block
 _ENOUGH = 50  # points, to know what one takes
 _SHORT = 60.0  # s; of what takes less nothing needs to be said
+_BLOCK_BYTES = 16e6
+_BLOCK_SECONDS = 2.0
+_MOST_POINTS = 512
+
+
+def points_per_block(bytes_per_point: float, seconds_per_point: float = 0.0) -> int:
+    """Give how many points are worked on between two writes: by memory and by time, at least one.
+
+    It follows from the config alone, so that the same run gives the same file.
+    """
+    seconds = max(seconds_per_point, _BLOCK_SECONDS / _MOST_POINTS)
+    most = min(_BLOCK_BYTES / bytes_per_point, _BLOCK_SECONDS / seconds, _MOST_POINTS)
+    return max(1, int(most))
 
 
 class PointCost(NamedTuple):

@@ -18,19 +18,6 @@ Coordinate = tuple[str, NDArray[Any]]
 """A dimension and the values along it."""
 OF_ITS_OWN = "_index"
 """Ends the name of a dimension whose coordinate differs between combinations."""
-_BLOCK_BYTES = 16e6
-_BLOCK_SECONDS = 2.0
-_MOST_POINTS = 512
-
-
-def points_per_block(bytes_per_point: float, seconds_per_point: float = 0.0) -> int:
-    """Give how many points are worked on between two writes: by memory and by time, at least one.
-
-    It follows from the config alone, so that the same run gives the same file.
-    """
-    seconds = max(seconds_per_point, _BLOCK_SECONDS / _MOST_POINTS)
-    most = min(_BLOCK_BYTES / bytes_per_point, _BLOCK_SECONDS / seconds, _MOST_POINTS)
-    return max(1, int(most))
 
 
 class Layout:

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from octsim.band import wavenumbers
 from octsim.config import Config
 from octsim.differences import wrapped
+from octsim.estimates import points_per_block
 from octsim.estimation import estimator_of, ideal_phases
-from octsim.layout import Coordinate, Layout, points_per_block
+from octsim.layout import Coordinate, Layout
 from octsim.parts import Part, Stage, Stream
 from octsim.plates import ideal_spectra, predicted_phase_slope
 from octsim.stored import Stored

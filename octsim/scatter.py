@@ -1,7 +1,6 @@
 """A stage scattered over several jobs, each with a share of its blocks, and gathered again."""
 
 import json
-import math
 import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -15,16 +14,14 @@ from numpy.typing import NDArray
 
 from octsim.config import Config
 from octsim.errors import DatasetError
-from octsim.estimates import point_cost
 from octsim.files import reason, whole
-from octsim.grid import Combination, combinations
-from octsim.layout import Layout, points_per_block
+from octsim.grid import Combination
+from octsim.layout import Layout
 from octsim.parts import Part, Stream, arrays
-from octsim.reading import differing, keys_behind
+from octsim.reading import differing
+from octsim.workload import work_of
 
 Block = tuple[Combination, slice]
-SCATTERED = ("focus_scan", "focus_sweep", "detections")
-"""Stages that trace, and so may take long."""
 _INDEX = "index.json"
 _REMEDY = "remove it and run again"
 
@@ -40,8 +37,8 @@ class Share(NamedTuple):
     def blocks(self, layout: Layout) -> list[Block]:
         """Give this share's blocks of a stage that traces."""
         stage = layout.stage
-        every = layout.blocks(lambda config: _work(stage, config).together)
-        return self.among(every, lambda config: _work(stage, config).seconds)
+        every = layout.blocks(lambda config: work_of(stage, config).together)
+        return self.among(every, lambda config: work_of(stage, config).seconds)
 
     def among(self, blocks: Iterable[Block], seconds: Callable[[Config], float]) -> list[Block]:
         """Give the blocks of this share: neighbours, and about as much to trace as any other's.
@@ -64,52 +61,12 @@ class Share(NamedTuple):
         ]
 
 
-class _Work(NamedTuple):
-    """What a stage has to do at a plain config."""
-
-    points: int
-    """Points along the dimension that its blocks are cut from."""
-    seconds: float
-    """Processor time of one of them."""
-    together: int
-    """How many are in a block."""
-
-
-def _work(stage: str, config: Config) -> _Work:
-    size, seconds = point_cost(config)
-    count, each = {
-        "focus_scan": (config.focus_scan.focus.num, 1),
-        # a diameter's foci are one row of the dataset
-        "focus_sweep": (config.focus_law.diameters.num, config.focus_law.fraction.num),
-        "detections": (config.sweep.diameters.num, 1),
-    }[stage]
-    return _Work(count, each * seconds, points_per_block(each * size, each * seconds))
-
-
 def _length(span: slice) -> int:
     return int(span.stop - span.start)
 
 
 WHOLE = Share()
 """All of a stage, in one job."""
-
-
-def shares_of(config: Config) -> dict[str, int]:
-    """Give how many jobs each stage that traces is scattered over.
-
-    They are of ``scatter.minutes`` of processor time each, or of one block where that takes longer,
-    by rates that are the same everywhere: where a run is made does not change its jobs.
-    """
-    return {stage: _shares(stage, config) for stage in SCATTERED}
-
-
-def _shares(stage: str, config: Config) -> int:
-    seconds, blocks = 0.0, 0
-    for at in combinations(config, *keys_behind(stage, config)):
-        work = _work(stage, at.config)
-        seconds += work.points * work.seconds
-        blocks += math.ceil(work.points / work.together)
-    return max(1, min(round(seconds / (60 * config.scatter.minutes)), blocks))
 
 
 def write_share(

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from octsim.band import wavenumbers
 from octsim.compiled import compiled
 from octsim.config import Config
-from octsim.estimates import point_cost
-from octsim.layout import Coordinate, Layout, points_per_block
+from octsim.estimates import point_cost, points_per_block
+from octsim.layout import Coordinate, Layout
 from octsim.light import Light
 from octsim.parts import Part, Stage, Stream
 from octsim.paths import path_name

@@ -12,9 +12,9 @@ from octsim.config import Config, FocusLine
 from octsim.datasets import flags
 from octsim.detection import Outcome
 from octsim.errors import OctsimError
-from octsim.estimates import point_cost
+from octsim.estimates import point_cost, points_per_block
 from octsim.grid import Combination, combinations
-from octsim.layout import Coordinate, Layout, filling, points_per_block
+from octsim.layout import Coordinate, Layout, filling
 from octsim.light import AccuracyStatus, Light
 from octsim.parts import Part, Stage, Stream
 from octsim.points import Points

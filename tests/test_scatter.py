@@ -16,7 +16,8 @@ from octsim.grid import Combination
 from octsim.layout import Layout
 from octsim.netcdf import write_stream
 from octsim.parts import Stream
-from octsim.scatter import WHOLE, Share, gathered, notes_of, shares_of, write_share
+from octsim.scatter import WHOLE, Share, gathered, notes_of, write_share
+from octsim.workload import shares_of
 
 TINY: dict[str, Any] = {
     "tracing": {"rays": 200},
