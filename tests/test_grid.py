@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 import octsim
-from octsim import layout as layouts
+from octsim import estimates
 from octsim.config import Config
 from octsim.errors import ConfigError, OctsimError
 from octsim.grid import axes, combinations, dimension_name, remarks, without_grid
@@ -256,7 +256,7 @@ def test_blocks_threads_and_order_change_no_bit(monkeypatch: pytest.MonkeyPatch)
     configs = [gridded(grid, {"tracing": {"scheme": "paths", "accuracy": 1e-2}}) for grid in grids]
     whole = run(configs[0])
     for most, config, threads in ((1, configs[0], 1), (2, configs[1], 2), (3, configs[0], 3)):
-        monkeypatch.setattr(layouts, "_MOST_POINTS", most)
+        monkeypatch.setattr(estimates, "_MOST_POINTS", most)
         again = run(config, threads)
         for stage in STAGES:
             for at in combinations(config):
