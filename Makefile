@@ -42,7 +42,7 @@ archive: .venv/run
 
 reproduce: .venv/run
 	@test -n "$(FILE)" -a -n "$(INTO)" || { echo "octsim: make reproduce needs FILE= and INTO=" >&2; exit 2; }
-	@$(BIN)/python workflow/reproduce.py "$(FILE)" "$(INTO)" --cores $(CORES) $(TOLERANCE:%=--tolerance %)
+	@$(BIN)/python -m octsim.cli.reproduce "$(FILE)" "$(INTO)" --cores $(CORES) $(TOLERANCE:%=--tolerance %)
 
 test: .venv/dev
 	$(BIN)/pytest -n 2
@@ -82,7 +82,7 @@ slurm: .venv/slurm
 	touch $@
 
 test-slurm: .venv/dev .venv/slurm
-	OCTSIM_SLURM=1 $(BIN)/pytest tests/test_slurm.py
+	OCTSIM_SLURM=1 $(BIN)/pytest tests/workflow/test_slurm.py
 
 bench-slurm: .venv/dev .venv/slurm
 	$(BIN)/python benchmarks/slurm.py
@@ -112,7 +112,7 @@ bench-peers: .venv-peers/run
 	touch $@
 
 kills: .venv/dev
-	OCTSIM_KILLS=30 $(BIN)/pytest -n 2 tests/test_kill.py tests/test_cache.py -k killed
+	OCTSIM_KILLS=30 $(BIN)/pytest -n 2 tests/workflow/test_kill.py tests/instrument/test_cache.py -k killed
 
 clean:
 	rm -rf .venv .venv-peers results .snakemake

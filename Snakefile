@@ -15,17 +15,17 @@ from collections.abc import Callable
 from pathlib import Path
 
 from filelock import FileLock, Timeout
-from octsim.config import Config
-from octsim.errors import OctsimError
-from octsim.files import require_folder
-from octsim.estimates import check_budget, expected
-from octsim.gallery import STAGES, TARGETS, figures_of
-from octsim.grid import remarks
-from octsim.latest import begin, is_latest
-from octsim.loading import load_config
-from octsim.provenance import lock_file, source_digest
-from octsim.reading import keys_read, needs_law, parts_of
-from octsim.workload import SCATTERED, shares_of
+from octsim.config.models import Config
+from octsim.base.errors import OctsimError
+from octsim.base.files import require_folder
+from octsim.stages.cost_estimate import check_budget, expected
+from octsim.datasets.gallery import STAGES, TARGETS, figures_of
+from octsim.config.grid import remarks
+from octsim.stages.run_id import begin, is_latest
+from octsim.config.load import load_config
+from octsim.base.provenance import lock_file, source_digest
+from octsim.datasets.catalog import keys_read, needs_law, parts_of
+from octsim.stages.workload import SCATTERED, shares_of
 
 try:
     # the files themselves too, as snakemake's own reading lets a key stand twice
@@ -61,7 +61,6 @@ LOCK = FileLock(f"results/{run.run}/.lock")  # held from the start of a run to i
 # of other targets, what was asked for once: an archive has it too, brought up to date
 BESIDE = [file for file in (f"results/{run.run}/{t}.nc" for t in TARGETS) if Path(file).is_file()]
 SCRIPTS = Path(workflow.basedir) / "workflow" / "scripts"
-BENCHMARKS = Path(workflow.basedir) / "benchmarks"
 
 
 wildcard_constraints:
@@ -341,8 +340,6 @@ rule stability:
     resources:
         **needs(),
     params:
-        # when it is asked for: the benchmarks need not be beside a workflow that is copied
-        benchmark=lambda _: source_digest(BENCHMARKS / "stability.py"),
         made_from=of_stage("stability"),
     message:
         "Measure rounding at the extremes against 50 digits"

@@ -21,17 +21,17 @@ from same import numpy_tree, same_tree
 from trees import NoCompilerError, scalar_tree, simd_tree
 
 import octsim
-from octsim.band import wavenumbers
-from octsim.beam import vogel_beam
-from octsim.cache import opened
-from octsim.datasets import write
-from octsim.detection import detector_of
-from octsim.points import Points
-from octsim.scene import neuron_on_glass
-from octsim.simulation import tracer
-from octsim.spectrum import intensity
-from octsim.threads import each
-from octsim.tracing import trace
+from octsim.base.threads import each
+from octsim.datasets.files import write
+from octsim.instrument.cache import opened
+from octsim.instrument.instrument import tracer
+from octsim.instrument.points import Points
+from octsim.optics.band import wavenumbers
+from octsim.optics.beam import vogel_beam
+from octsim.optics.detector import detector_of
+from octsim.optics.scene import neuron_on_glass
+from octsim.schemes.field_sum import intensity
+from octsim.tracing.tree import trace
 
 ROOT = Path(__file__).parent.parent
 ROUNDS = 41
@@ -147,7 +147,8 @@ def pipeline(rounds: int = 3) -> dict[str, float]:
     """Measure the whole pipeline: medians of a few runs of the default config, in seconds."""
     python = sys.executable
     snakemake = [python, "-m", "snakemake", "--cores", "2"]
-    modules = "octsim.focus, octsim.law, octsim.sweep, octsim.phase, octsim.figures, octsim.loading"
+    stages = ", ".join(f"octsim.stages.{name}" for name in ("focus", "law", "sweep", "phase_slope"))
+    modules = f"{stages}, octsim.figures, octsim.config.load"
     taken: dict[str, list[float]] = {}
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)

@@ -13,15 +13,15 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from octsim.costs import apart
-from octsim.datasets import opened
-from octsim.loading import load_config
-from octsim.netcdf import write_stream
-from octsim.parts import Part, Stream
-from octsim.phase import fourier, phase_slope
-from octsim.shares import light_paths
-from octsim.stored import Stored
-from octsim.sweep import detections, spectra
+from octsim.config.load import load_config
+from octsim.datasets.files import opened
+from octsim.datasets.reader import Stored
+from octsim.datasets.stage import Part, Stream
+from octsim.datasets.writer import write_stream
+from octsim.stages.paths import light_paths
+from octsim.stages.phase_slope import fourier, phase_slope
+from octsim.stages.sweep import detections, spectra
+from octsim.studies.tradeoff.measured_cost import apart
 
 COUNTS = ((10, 4), (25, 10), (25, 40))
 THREADS = 2

@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import octsim
-from octsim.beam import Beam, vogel_beam
-from octsim.detection import RIM, Detector, detector_of
-from octsim.scene import Cylinder, Scene, neuron_on_glass
-from octsim.tracing import trace
+from octsim.optics.beam import Beam, vogel_beam
+from octsim.optics.detector import RIM, Detector, detector_of
+from octsim.optics.scene import Cylinder, Scene, neuron_on_glass
+from octsim.tracing.tree import trace
 
 ROOT = Path(__file__).parent.parent
 ROUNDS = 7

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 from trees import Tree, library
 
-from octsim.beam import Beam
-from octsim.detection import RIM, Detector
-from octsim.scene import Cylinder, Scene
+from octsim.optics.beam import Beam
+from octsim.optics.detector import RIM, Detector
+from octsim.optics.scene import Cylinder, Scene
 
 SOURCE = Path(__file__).parent / "same.c"
 Array = NDArray[np.float64]
@@ -43,7 +43,7 @@ def same_tree(
 ) -> Tree:
     """Trace in C by ``same_scalar``, a ray at a time, or ``same_lanes``, a block of them.
 
-    Other arguments as in `octsim.tracing.trace`.
+    Other arguments as in `octsim.tracing.tree.trace`.
 
     Raises
     ------
@@ -86,7 +86,7 @@ def numpy_tree(
 ) -> Tree:
     """Trace in plain numpy, breadth first: all rays of a generation and a departure at a time.
 
-    Arguments as in `octsim.tracing.trace`.
+    Arguments as in `octsim.tracing.tree.trace`.
     """
     n_glass, n_water, n_neuron = scene.refractive_index
     cylinder = scene.surfaces[1]

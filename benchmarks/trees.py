@@ -1,6 +1,6 @@
 """The full ray tree of the thesis's scene in C by its invariants, to measure octsim against.
 
-`scalar_tree` and `simd_tree` take what `octsim.tracing.trace` takes and find the same
+`scalar_tree` and `simd_tree` take what `octsim.tracing.tree.trace` takes and find the same
 rays; `tree.c` says how. They know one scene only, a cylinder in water over a plane of glass, and
 owe part of their speed to it.
 """
@@ -18,9 +18,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.beam import Beam
-from octsim.detection import RIM, Detector
-from octsim.scene import Cylinder, Medium, Plane, Scene
+from octsim.optics.beam import Beam
+from octsim.optics.detector import RIM, Detector
+from octsim.optics.scene import Cylinder, Medium, Plane, Scene
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -199,7 +199,7 @@ def scalar_tree(
 ) -> Tree:
     """Trace in C, one ray at a time and depth first.
 
-    Arguments as in `octsim.tracing.trace`.
+    Arguments as in `octsim.tracing.tree.trace`.
 
     Raises
     ------

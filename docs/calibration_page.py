@@ -6,11 +6,11 @@ import numpy as np
 import xarray as xr
 from markdown import table
 
-from octsim.calibrate import INDICES, RAYS
-from octsim.config import Config
-from octsim.nanometres import LARGEST, expansion, sensitivity_at
-from octsim.parameters import PARAMETERS
-from octsim.round_trip import REST, TRIALS
+from octsim.config.models import Config
+from octsim.studies.calibration.expansion import LARGEST, expansion, sensitivity_at
+from octsim.studies.calibration.round_trips import REST, TRIALS
+from octsim.studies.calibration.study import INDICES, RAYS
+from octsim.studies.calibration.tolerances import PARAMETERS
 
 SHOWN = (1.0, 1.2, 1.4, 1.6, 1.8, 2.0)
 EXAMPLE = (0.011, 1.4)  # rad, µm
@@ -274,7 +274,7 @@ intensity for each spectrum; a netCDF file has a variable intensity along such a
 phases have to be those of the calibration's estimator:
 
 ```python
-from octsim.calibrate import calibrating
+from octsim.studies.calibration.study import calibrating
 
 depth = config.scene.refractive_index.neuron * 1.4  # of the neuron's two sides, µm
 phase = octsim.phase_of("spectra.csv", calibrating(config), nominal_depth=depth).phase

@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 from markdown import table
 
-from octsim.comparison import PHASES
-from octsim.contenders import CONTENDERS
-from octsim.resolution import STEP
+from octsim.studies.estimators.contenders import CONTENDERS
+from octsim.studies.estimators.resolution import STEP
+from octsim.studies.estimators.study import PHASES
 
 
 def estimators_page(compared: xr.Dataset) -> str:

@@ -16,9 +16,9 @@ from pydantic import BaseModel
 from spike_page import spike_page
 
 import octsim
-from octsim.config import Config
-from octsim.detection import detector_radius
-from octsim.settings import CONVERGED_SAMPLES, FINER, reference
+from octsim.config.models import Config
+from octsim.optics.detector import detector_radius
+from octsim.studies.tradeoff.settings import CONVERGED_SAMPLES, FINER, reference
 
 DOCS = Path(__file__).parent
 RESULTS = DOCS.parent / "results" / "thesis"
@@ -67,7 +67,7 @@ def config_reference() -> str:
 
 CONFIG_TEMPLATE = """# The config
 
-Written by `make docs` from `octsim/config.py`; do not edit.
+Written by `make docs` from `octsim/config/models.py`; do not edit.
 
 A file of yours holds only what differs from the defaults. Mappings merge deeply, everything else
 replaces. Lengths are text with their unit (`5 nm`, `1.4 um`, `0.3 mm`); ranges are

@@ -9,9 +9,9 @@ import xarray as xr
 from markdown import table
 from scipy.signal import find_peaks
 
-from octsim.causes import weights
-from octsim.processing import Processing
-from octsim.spike import LEAKAGE
+from octsim.config.processing import Processing
+from octsim.studies.causes.study import LEAKAGE
+from octsim.studies.causes.switches import weights
 
 _PEAK = 0.2  # mrad/nm: smaller ones are not listed
 _LISTED = ("centre", "envelope", "image", "bins", "step", "rays", "paths")

@@ -2,6 +2,6 @@
 
 import sys
 
-from octsim.command import main
+from octsim.cli.main import main
 
 sys.exit(main())

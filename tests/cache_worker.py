@@ -8,7 +8,7 @@ import sqlite3
 import sys
 from pathlib import Path
 
-from octsim.cache import PointCache, describe
+from octsim.instrument.cache import PointCache, describe
 
 POINTS = 400
 SIZE = 6_000

@@ -9,8 +9,8 @@ import pytest
 import xarray as xr
 from hypothesis import settings
 
-from octsim.calibrate import calibration
-from octsim.loading import load_config
+from octsim.config.load import load_config
+from octsim.studies.calibration.study import calibration
 
 # The same draws every time: a failure on a contributor's machine is a failure on every machine.
 settings.register_profile("octsim", derandomize=True, deadline=None)

@@ -5,13 +5,13 @@ from collections.abc import Callable, Mapping
 import xarray as xr
 from matplotlib.figure import Figure
 
+from octsim.config.processing import Processing
 from octsim.figures.beam import figure_1
 from octsim.figures.focus import figure_6, figure_7
 from octsim.figures.grid import figure_grid
 from octsim.figures.paths import figure_paths
-from octsim.figures.phase import figure_10, figure_11, figure_12
+from octsim.figures.phase_slope import figure_10, figure_11, figure_12
 from octsim.figures.spectrum import figure_8, figure_9
-from octsim.processing import Processing
 
 Draw = Callable[[Mapping[str, xr.Dataset], Processing], Figure]
 

@@ -2,8 +2,8 @@
 
 from matplotlib.figure import Figure
 
-from octsim.beam import vogel_spiral
 from octsim.figures.style import BLUE
+from octsim.optics.beam import vogel_spiral
 
 POINTS = 300
 

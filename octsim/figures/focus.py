@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from octsim.config import FocusLine
+from octsim.config.models import FocusLine
 from octsim.figures.style import BLACK, BLUE, ORANGE, label, title
 
 

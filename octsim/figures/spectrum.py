@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from octsim.config.processing import Processing
 from octsim.figures.style import BLUE, GREEN, SKY, component_colour, label, title
-from octsim.processing import Processing
-from octsim.transform import centred_by, windowed
+from octsim.phase.transform import centred_by, windowed
 
 DIAMETER = 1.4
 """Diameter that the thesis shows, µm; the nearest of the sweep is drawn."""

@@ -5,11 +5,11 @@ from pathlib import Path
 
 from job import fitted_law, job
 
-from octsim.datasets import read, write
+from octsim.config.grid import without_grid
+from octsim.datasets.files import read, write
 from octsim.figures.action_potential import action_potential_figure
 from octsim.figures.style import look, save
-from octsim.firing import action_potential, summary
-from octsim.grid import without_grid
+from octsim.studies.calibration.action_potential import action_potential, summary
 
 with job(snakemake) as given, look():
     config = without_grid(given, "action_potential")

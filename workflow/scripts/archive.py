@@ -6,7 +6,7 @@ from pathlib import Path
 
 from job import job
 
-from octsim.packing import pack
+from octsim.archive.pack import pack
 
 with job(snakemake) as config:
     file = Path(snakemake.output[0])

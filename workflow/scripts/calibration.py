@@ -5,12 +5,12 @@ from pathlib import Path
 
 from job import fitted_law, job
 
-from octsim.calibrate import calibration, summary
-from octsim.datasets import write
+from octsim.config.grid import without_grid
+from octsim.datasets.files import write
 from octsim.figures.calibration import calibration_figure
 from octsim.figures.style import look, save
-from octsim.grid import without_grid
-from octsim.sweep import doubts
+from octsim.stages.sweep import doubts
+from octsim.studies.calibration.study import calibration, summary
 
 with job(snakemake) as given, look():
     config = without_grid(given, "calibration")

@@ -5,11 +5,11 @@ from pathlib import Path
 
 from job import fitted_law, job
 
-from octsim.datasets import write
+from octsim.config.grid import without_grid
+from octsim.datasets.files import write
 from octsim.figures.causes import FIGURES
 from octsim.figures.style import look, save
-from octsim.grid import without_grid
-from octsim.spike import causes, summary
+from octsim.studies.causes.study import causes, summary
 
 with job(snakemake) as given, look():
     config = without_grid(given, "causes")

@@ -5,11 +5,11 @@ from pathlib import Path
 
 from job import fitted_law, job
 
-from octsim.comparison import estimators, summary
-from octsim.datasets import write
+from octsim.config.grid import without_grid
+from octsim.datasets.files import write
 from octsim.figures.estimators import estimators_figure
 from octsim.figures.style import look, save
-from octsim.grid import without_grid
+from octsim.studies.estimators.study import estimators, summary
 
 with job(snakemake) as given, look():
     config = without_grid(given, "estimators")

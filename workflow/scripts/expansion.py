@@ -5,11 +5,11 @@ from pathlib import Path
 
 from job import job
 
-from octsim.datasets import read, write
+from octsim.config.grid import without_grid
+from octsim.datasets.files import read, write
 from octsim.figures.expansion import expansion_figure
 from octsim.figures.style import look, save
-from octsim.grid import without_grid
-from octsim.nanometres import series_expansion, series_of, summary
+from octsim.studies.calibration.expansion import series_expansion, series_of, summary
 
 with job(snakemake) as given, look():
     config = without_grid(given, "expansion")

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from job import end_with_the_run, job
 
-from octsim.datasets import read
+from octsim.datasets.files import read
+from octsim.datasets.gallery import NOT_DRAWN
 from octsim.figures import FIGURES
 from octsim.figures.style import look, save
-from octsim.gallery import NOT_DRAWN
 
 
 def draw(name: str) -> None:

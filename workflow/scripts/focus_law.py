@@ -2,10 +2,10 @@
 
 from job import job
 
-from octsim.datasets import opened, read
-from octsim.law import focus_law, gaussian_fits
-from octsim.netcdf import write_stream
-from octsim.progress import watched
+from octsim.datasets.files import opened, read
+from octsim.datasets.writer import write_stream
+from octsim.stages.law import focus_law, gaussian_fits
+from octsim.stages.progress import watched
 
 with job(snakemake) as config:
     fits_file = snakemake.output.gaussian_fits

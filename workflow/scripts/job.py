@@ -12,18 +12,18 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from octsim.config import Config
-from octsim.errors import OctsimError, OctsimWarning
-from octsim.files import whole
-from octsim.latest import is_latest
-from octsim.loading import load_config
+from octsim.base.errors import OctsimError, OctsimWarning
+from octsim.base.files import whole
+from octsim.config.load import load_config
+from octsim.config.models import Config
+from octsim.stages.run_id import is_latest
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from octsim.parts import Stream
-    from octsim.points import Points
-    from octsim.scatter import Share
+    from octsim.datasets.stage import Stream
+    from octsim.instrument.points import Points
+    from octsim.stages.scatter import Share
 
 
 def end_with_the_run(folder: Path) -> None:
@@ -69,7 +69,7 @@ def job(snakemake: Any) -> Iterator[Config]:
 
 def fitted_law(snakemake: Any, config: Config) -> "xr.Dataset | None":
     """Read a target's focus law, where its config needs one."""
-    from octsim.datasets import read
+    from octsim.datasets.files import read
 
     file = snakemake.input.focus_law
     return read(file, "focus_law", config) if file else None
@@ -81,12 +81,12 @@ def trace(snakemake: Any, config: Config, stage: "Callable[[Points, Share], Stre
     What it traced and what the cache had are counted in the log of points.
     """
     # numba's import is not for jobs that trace nothing
-    from octsim.cache import opened
-    from octsim.cacheplace import cache_file
-    from octsim.netcdf import write_stream
-    from octsim.points import Points
-    from octsim.progress import watched
-    from octsim.scatter import WHOLE, Share, gathered, notes_of, write_share
+    from octsim.datasets.writer import write_stream
+    from octsim.instrument.cache import opened
+    from octsim.instrument.cacheplace import cache_file
+    from octsim.instrument.points import Points
+    from octsim.stages.progress import watched
+    from octsim.stages.scatter import WHOLE, Share, gathered, notes_of, write_share
 
     output, shares = Path(snakemake.output[0]), [Path(file) for file in snakemake.input.shares]
     if shares:

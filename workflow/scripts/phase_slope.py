@@ -4,10 +4,10 @@ import logging
 
 from job import job
 
-from octsim.datasets import opened
-from octsim.netcdf import write_stream
-from octsim.phase import fourier, phase_slope, summary
-from octsim.progress import watched
+from octsim.datasets.files import opened
+from octsim.datasets.writer import write_stream
+from octsim.stages.phase_slope import fourier, phase_slope, summary
+from octsim.stages.progress import watched
 
 with job(snakemake) as config:
     with opened(snakemake.input.spectra, "spectra", config) as spectra:

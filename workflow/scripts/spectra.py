@@ -4,11 +4,11 @@ import logging
 
 from job import job
 
-from octsim.datasets import opened
-from octsim.netcdf import write_stream
-from octsim.progress import watched
-from octsim.shares import light_paths
-from octsim.sweep import doubts, spectra
+from octsim.datasets.files import opened
+from octsim.datasets.writer import write_stream
+from octsim.stages.paths import light_paths
+from octsim.stages.progress import watched
+from octsim.stages.sweep import doubts, spectra
 
 with job(snakemake) as config:
     with opened(snakemake.input.detections, "detections", config) as detected:

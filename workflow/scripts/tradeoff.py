@@ -5,11 +5,11 @@ from pathlib import Path
 
 from job import end_with_the_run, job
 
-from octsim.datasets import write
+from octsim.config.grid import without_grid
+from octsim.datasets.files import write
 from octsim.figures.style import look, save
 from octsim.figures.tradeoff import tradeoff_figure
-from octsim.grid import without_grid
-from octsim.tradeoff import summary, tradeoff
+from octsim.studies.tradeoff.study import summary, tradeoff
 
 with job(snakemake) as config, look():
     measured = tradeoff(without_grid(config, "tradeoff"), snakemake.threads, end_with_the_run)

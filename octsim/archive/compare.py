@@ -1,0 +1,248 @@
+"""Two runs, or two datasets, side by side: what differs, and by how much."""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from octsim.archive.compare_origins import Change, config_changes, version_changes
+from octsim.archive.compare_points import Common, blocks, common_points
+from octsim.archive.compare_values import Deviation, Kind, deviation, kind_of
+from octsim.archive.recorded import Recorded, recorded
+from octsim.base.errors import DatasetError
+from octsim.base.files import reason
+from octsim.datasets.files import opened
+
+TOLERANCE = 1e-12
+"""Relative difference up to which numbers count as the same."""
+SCALARS: Mapping[str, tuple[str, ...]] = {
+    "focus_law": ("slope", "intercept"),
+    "phase_slope": (
+        "mean_phase_slope",
+        "phase_slope_standard_deviation",
+        "predicted_phase_slope",
+        "standard_deviation_from_ideal",
+        "mean_ideal_phase_slope",
+        "ideal_phase_slope_standard_deviation",
+        "largest_deviation",
+        "largest_deviation_diameter",
+    ),
+}
+"""What a run comes to, by stage."""
+
+
+class VariableContrast(NamedTuple):
+    """A variable of a dataset in two runs."""
+
+    name: str
+    kind: Kind
+    deviation: Deviation
+    unlike: str = ""
+    """Why its values can't be compared, if they can't."""
+
+    def differs(self, tolerance: float) -> bool:
+        """Tell whether it is another than in the other run; what is measured never is."""
+        if self.kind is Kind.MEASURED:
+            return False
+        found = self.deviation
+        beyond = not found.relative <= tolerance
+        return bool(self.unlike or beyond or found.misplaced or found.unequal)
+
+
+class Unshared(NamedTuple):
+    """Points along a dimension that are not all in both runs."""
+
+    dimension: str
+    common: int
+    sizes: tuple[int, int]
+
+
+class DatasetContrast(NamedTuple):
+    """A stage's dataset in two runs."""
+
+    stage: str
+    variables: tuple[VariableContrast, ...]
+    """Those that both have."""
+    missing: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
+    """Variables that the first run, and that the second run lacks."""
+    unshared: tuple[Unshared, ...] = ()
+    uneven: int = 0
+    """Number of shared points that have not as many rays, which are not compared."""
+
+    def differs(self, tolerance: float) -> bool:
+        """Tell whether it is another than in the other run."""
+        apart = any(self.missing) or self.unshared or self.uneven
+        return bool(apart) or any(one.differs(tolerance) for one in self.variables)
+
+
+class Scalar(NamedTuple):
+    """A number that a run comes to, in both."""
+
+    name: str
+    """Of its stage and of itself."""
+    units: str
+    first: float
+    second: float
+
+
+class Contrast(NamedTuple):
+    """Two runs side by side."""
+
+    names: tuple[str, str]
+    """As they were given."""
+    runs: tuple[str, str]
+    """Names of the runs."""
+    tolerance: float
+    config: tuple[Change, ...]
+    versions: tuple[Change, ...]
+    datasets: tuple[DatasetContrast, ...]
+    """Those that both have."""
+    missing: tuple[tuple[str, ...], tuple[str, ...]]
+    """Stages whose dataset the first run, and the second run lacks."""
+    scalars: tuple[Scalar, ...]
+
+    @property
+    def differs(self) -> bool:
+        """Whether any number is beyond the tolerance, or not in both.
+
+        Another config or version is none by itself: numbers tell what it did.
+        """
+        return any(self.missing) or any(one.differs(self.tolerance) for one in self.datasets)
+
+
+def compare(first: str | Path, second: str | Path, tolerance: float = TOLERANCE) -> Contrast:
+    """Compare two runs variable by variable, on the points that they share.
+
+    Parameters
+    ----------
+    first, second : path
+        A run's folder as ``results/thesis``, or the file of one of its datasets.
+    tolerance : float
+        Largest relative difference, max |a − b| / max |b| over a variable, of what is the same.
+
+    Returns
+    -------
+    Contrast
+        What differs in config, versions and numbers.
+
+    Raises
+    ------
+    DatasetError
+        If one of them can't be read, or they have no dataset in common.
+    """
+    with recorded(Path(first)) as one, recorded(Path(second)) as other:
+        return contrast(one, other, tolerance)
+
+
+def contrast(first: Recorded, second: Recorded, tolerance: float = TOLERANCE) -> Contrast:
+    """Compare two runs that are at hand; see `compare`."""
+    shared = [stage for stage in first.datasets if stage in second.datasets]
+    if not shared:
+        held = " and ".join(", ".join(one.datasets) for one in (first, second))
+        raise DatasetError(f"{first.name}, {second.name}: no dataset in common ({held})")
+    found, scalars = [], []
+    for stage in shared:
+        with _both(stage, first, second) as (one, other):
+            found.append(_dataset(stage, one, other))
+            scalars += _scalars(stage, one, other)
+    return Contrast(
+        names=(first.name, second.name),
+        runs=(first.config.run, second.config.run),
+        tolerance=tolerance,
+        config=config_changes(first.config, second.config),
+        versions=version_changes(first.datasets, second.datasets),
+        datasets=tuple(found),
+        missing=(_lacking(first, second), _lacking(second, first)),
+        scalars=tuple(scalars),
+    )
+
+
+def _lacking(one: Recorded, other: Recorded) -> tuple[str, ...]:
+    return tuple(stage for stage in other.datasets if one.whole and stage not in one.datasets)
+
+
+@contextmanager
+def _both(stage: str, first: Recorded, second: Recorded) -> Iterator[tuple[xr.Dataset, xr.Dataset]]:
+    files = first.datasets[stage], second.datasets[stage]
+    with opened(files[0], stage) as one, opened(files[1], stage) as other:
+        try:
+            yield one, other
+        # whatever a damaged or hostile file makes of its sizes and types
+        except (OSError, RuntimeError, ValueError, TypeError, LookupError, MemoryError) as error:
+            which = " or ".join(map(str, files))
+            raise DatasetError(f"{which}: can't be read ({reason(error)})") from None
+
+
+def _dataset(stage: str, first: xr.Dataset, second: xr.Dataset) -> DatasetContrast:
+    names = [str(name) for name in first.variables]
+    common, uneven = common_points(first, second)
+    return DatasetContrast(
+        stage,
+        tuple(_variable(n, first, second, common) for n in names if n in second.variables),
+        (
+            tuple(str(name) for name in second.variables if name not in first.variables),
+            tuple(name for name in names if name not in second.variables),
+        ),
+        tuple(
+            Unshared(dimension, points.first.size, points.sizes)
+            for dimension, points in common.items()
+            if not points.is_all
+        ),
+        uneven,
+    )
+
+
+def _variable(
+    name: str, first: xr.Dataset, second: xr.Dataset, common: Mapping[str, Common]
+) -> VariableContrast:
+    one, other = first.variables[name], second.variables[name]
+    kind = kind_of(name, one.dtype, name in first.coords or name in second.coords)
+    unlike = _unlike(one, other, common)
+    if unlike or kind is Kind.MEASURED:
+        return VariableContrast(name, kind, Deviation(), unlike)
+    return VariableContrast(name, kind, deviation(blocks(one, other, common), kind))
+
+
+def _unlike(one: xr.Variable, other: xr.Variable, common: Mapping[str, Common]) -> str:
+    """Say why two variables' values can't be compared, if they can't."""
+    if one.dims != other.dims:
+        return f"dimensions {_listed(one)} -> {_listed(other)}"
+    types = _type(one.dtype), _type(other.dtype)
+    if types[0] != types[1]:
+        return f"type {types[0]} -> {types[1]}"
+    units = one.attrs.get("units"), other.attrs.get("units")
+    if units[0] != units[1]:
+        return f"units {units[0]} -> {units[1]}"
+    empty = [
+        str(d) for d in one.dims if common[str(d)].first.size == 0 != max(common[str(d)].sizes)
+    ]
+    return f"no {' or '.join(empty)} in common" if empty else ""
+
+
+def _type(dtype: np.dtype[Any]) -> str:
+    return "text" if dtype.kind in "OSUT" else str(dtype)
+
+
+def _listed(variable: xr.Variable) -> str:
+    return f"({', '.join(map(str, variable.dims))})"
+
+
+def _scalars(stage: str, first: xr.Dataset, second: xr.Dataset) -> list[Scalar]:
+    """Give what both runs come to; of a grid nothing is one number."""
+    there = [
+        name
+        for name in SCALARS.get(stage, ())
+        if all(name in dataset and not dataset[name].ndim for dataset in (first, second))
+    ]
+    return [
+        Scalar(
+            f"{stage} {name}",
+            str(second[name].attrs.get("units", "1")),
+            float(first[name]),
+            float(second[name]),
+        )
+        for name in there
+    ]

@@ -1,0 +1,82 @@
+"""How far the values of one variable are from those of another."""
+
+from collections.abc import Iterable
+from enum import Enum
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from octsim.phase.derivatives import wrapped
+
+MEASURED = frozenset({"cpu_seconds", "peak_memory", "estimator_seconds", "phase_slope_frontier"})
+"""Variables that a clock or the system gave, or that follow from one: another run has others."""
+WRAPPED = frozenset({"phase", "field_phase", "estimated_phase", "spike_leaked_phase"})
+"""Angles that are known but for whole turns."""
+
+
+class Kind(Enum):
+    """How a variable is judged."""
+
+    NUMBER = "number"
+    """By the relative difference."""
+    ANGLE = "angle"
+    """The same, modulo 2π."""
+    EXACT = "exact"
+    """Whole numbers, text, flags and coordinates: every value has to be equal."""
+    MEASURED = "measured"
+    """Not at all."""
+
+
+class Deviation(NamedTuple):
+    """How far a variable is from another of as many values."""
+
+    relative: float = 0.0
+    """max |a − b| / max |b| over the values that are finite in both."""
+    misplaced: int = 0
+    """Number of values that are NaN, or infinite, in one and something else in the other."""
+    unequal: int = 0
+    """Number of values that are not equal, where they have to be."""
+    values: int = 0
+    """Number of values compared."""
+
+
+def kind_of(name: str, dtype: np.dtype[Any], is_coordinate: bool) -> Kind:
+    """Tell how a variable is judged."""
+    if name in MEASURED:
+        return Kind.MEASURED
+    if is_coordinate or dtype.kind != "f":
+        return Kind.EXACT
+    return Kind.ANGLE if name in WRAPPED else Kind.NUMBER
+
+
+def deviation(blocks: Iterable[tuple[NDArray[Any], NDArray[Any]]], kind: Kind) -> Deviation:
+    """Compare values that come in blocks of the same shape.
+
+    Parameters
+    ----------
+    blocks : iterable
+        Values of the one and of the other.
+    kind : Kind
+        How they are judged.
+    """
+    largest = scale = 0.0
+    misplaced = unequal = values = 0
+    for one, other in blocks:
+        values += one.size
+        same = one == other
+        if one.dtype.kind == "f":
+            same |= np.isnan(one) & np.isnan(other)
+        if kind is Kind.EXACT or one.dtype.kind != "f":
+            unequal += int((~same).sum())
+            continue
+        finite = np.isfinite(one) & np.isfinite(other)
+        misplaced += int((~same & ~finite).sum())
+        with np.errstate(over="ignore"):  # of damaged values: then it is infinite, and said so
+            difference = one[finite] - other[finite]
+        if kind is Kind.ANGLE:
+            difference = wrapped(difference)
+        largest = max(largest, float(np.abs(difference).max(initial=0.0)))
+        scale = max(scale, float(np.abs(other[finite]).max(initial=0.0)))
+    relative = largest / scale if scale else np.inf if largest else 0.0
+    return Deviation(relative, misplaced, unequal, values)

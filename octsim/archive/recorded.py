@@ -1,0 +1,77 @@
+"""What a person names, a run's folder, its archive or a dataset, as the datasets that it holds."""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+from octsim.archive.run_folder import run_in
+from octsim.archive.verify import unpacked
+from octsim.base.errors import DatasetError
+from octsim.config.models import Config
+from octsim.datasets.catalog import keys_behind
+from octsim.datasets.files import opened
+from octsim.datasets.versions import recorded_config
+
+
+class Recorded(NamedTuple):
+    """Datasets of one config."""
+
+    name: str
+    """As it was given."""
+    config: Config
+    """What all of the datasets follow from."""
+    datasets: Mapping[str, Path]
+    """By stage, in alphabetical order."""
+    whole: bool
+    """Whether it is a run, and not one file: then a dataset that it does not hold is missing."""
+
+
+@contextmanager
+def recorded(path: Path) -> Iterator[Recorded]:
+    """Give what stands at a path; an archive is unpacked for as long as it is looked at.
+
+    Raises
+    ------
+    ArchiveError, DatasetError
+        If it is no run and no dataset, or one that can't be read.
+    """
+    with located(path) as place:
+        if place.is_dir():
+            run = run_in(place)
+            found = Recorded(str(path), run.config, run.datasets, True)
+        else:
+            with opened(place) as dataset:
+                config = Config.model_validate(recorded_config(dataset.attrs))
+                stage = str(dataset.attrs["stage"])
+            found = Recorded(str(path), config, {stage: place}, False)
+        for stage, file in found.datasets.items():
+            # whatever a file calls itself may become a file's name
+            if not keys_behind(stage, found.config):
+                raise DatasetError(f"{file}: of the stage {stage!r}, which this octsim lacks")
+        yield found
+
+
+@contextmanager
+def located(path: Path) -> Iterator[Path]:
+    """Give the folder that has a run's datasets, or the one dataset's file, that a path means.
+
+    Raises
+    ------
+    ArchiveError
+        If an archive is not as it was packed.
+    DatasetError
+        If there is nothing, or something else.
+    """
+    if not path.exists():
+        raise DatasetError(f"{path}: not there; give a run's folder as results/thesis, or a file")
+    if path.suffix == ".zip" and path.is_file():
+        with unpacked(path) as folder:
+            yield folder
+    elif path.is_dir() or path.suffix == ".nc":
+        yield path
+    else:
+        raise DatasetError(
+            f"{path}: neither a run's folder, nor an archive, nor a dataset; give one as "
+            "results/thesis, results/thesis/thesis.zip or results/thesis/phase_slope.nc"
+        )

@@ -1,0 +1,86 @@
+"""A run that was made: its datasets and figures, and the config that all of them follow from."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from octsim.base.errors import DatasetError
+from octsim.config.models import Config
+from octsim.datasets.catalog import differing
+from octsim.datasets.files import opened
+from octsim.datasets.gallery import STAGES, TARGETS
+from octsim.datasets.versions import recorded_config
+
+FIGURES = "figures"
+"""Folder of a run's figures, below its own."""
+
+
+class Run(NamedTuple):
+    """A run's files."""
+
+    config: Config
+    """What all of the datasets follow from."""
+    datasets: Mapping[str, Path]
+    """By stage, in alphabetical order."""
+    figures: tuple[Path, ...]
+    """In alphabetical order."""
+
+
+def run_in(folder: Path) -> Run:
+    """Give the run whose datasets stand in a folder; other files there are none of it.
+
+    Parameters
+    ----------
+    folder : path
+        ``results/<run>/``, or an unpacked archive.
+
+    Raises
+    ------
+    DatasetError
+        If the folder has no datasets, one of them can't be read, or they are of different configs.
+    """
+    known = {stage: folder / f"{stage}.nc" for stage in sorted((*STAGES, *TARGETS))}
+    datasets = {stage: file for stage, file in known.items() if file.is_file()}
+    if not datasets:
+        raise DatasetError(f"{folder}: no datasets; give a folder as results/thesis")
+    configs: dict[str, Config] = {}
+    for stage, file in datasets.items():
+        with opened(file, stage) as dataset:
+            configs[stage] = Config.model_validate(recorded_config(dataset.attrs))
+    figures = tuple(sorted(path for path in (folder / FIGURES).glob("*") if _is_plain(path)))
+    return Run(_common(configs, datasets), datasets, figures)
+
+
+def _is_plain(path: Path) -> bool:
+    return path.is_file() and not path.is_symlink() and not path.name.startswith(".")
+
+
+def _common(configs: Mapping[str, Config], datasets: Mapping[str, Path]) -> Config:
+    """Give the config that every dataset can have been made from.
+
+    A key that a stage does not read may have been edited since it was made: then the dataset that
+    was made last has the config of all.
+    """
+    first: DatasetError | None = None
+    # the end of the run, where it is there, has most likely been made last
+    for _, config in sorted(configs.items(), key=lambda one: one[0] != "phase_slope"):
+        differing = _differing(config, configs)
+        if not differing:
+            return config
+        stage, keys = next(iter(differing.items()))
+        first = first or DatasetError(
+            f"{datasets[stage]}: made from another config than the datasets beside it (its "
+            f"{', '.join(keys)} differ); run again to make it anew, or move it away"
+        )
+    assert first is not None
+    raise first
+
+
+def _differing(config: Config, configs: Mapping[str, Config]) -> dict[str, list[str]]:
+    """Give the stages that another config than this one made, with the keys that tell."""
+    found = {}
+    for stage, other in configs.items():
+        differ = differing(stage, config, other.to_dict())
+        if differ or config.run != other.run:
+            found[stage] = differ or ["run"]
+    return found

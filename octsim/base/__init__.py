@@ -1,0 +1,1 @@
+"""Ground: errors, whole files, compiled code, provenance, threads."""

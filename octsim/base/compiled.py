@@ -1,0 +1,33 @@
+"""Compiling to machine code, kept on disk for as long as no source behind it changes."""
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import numba
+
+from octsim.base.provenance import PACKAGE, source_digest
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def compiled(**options: Any) -> Callable[[Function], Function]:
+    """Compile a function when it is first called, without the interpreter's lock.
+
+    numba's own cache looks at the time of the function's file alone and would go on using old
+    formulas from other files; here the cache's folder is named after the digest of all of them.
+    Options are those of `numba.njit`.
+    """
+
+    def compile_(function: Function) -> Function:
+        folder = PACKAGE / "__pycache__" / f"numba-{source_digest(function.__module__)}"
+        settings: Any = numba.config
+        elsewhere, settings.CACHE_DIR = settings.CACHE_DIR, str(folder)
+        try:
+            dispatcher: Function = numba.njit(
+                cache=True, nogil=True, error_model="numpy", **options
+            )(function)
+        finally:
+            settings.CACHE_DIR = elsewhere
+        return dispatcher
+
+    return compile_

@@ -1,0 +1,80 @@
+"""Files that appear whole or not at all."""
+
+import contextlib
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from octsim.base.errors import FileError
+
+
+def reason(error: Exception) -> str:
+    """Give what an error says, in one line."""
+    said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return " ".join(said.split()) or type(error).__name__
+
+
+# snakemake's own notes and the copies that it keeps of files being replaced need some room too
+SPACE = 32_000_000
+_FULL = 1_000_000
+
+
+def require_folder(path: Path) -> None:
+    """Check that a folder is there, or can be made, can be written in, and has room.
+
+    Raises
+    ------
+    FileError
+        If it can't; nothing is made.
+    """
+    there = next(place for place in (path, *path.absolute().parents) if place.exists())
+    if not there.is_dir():
+        raise FileError(f"{path}: can't be a folder, as {there.name} is a file; move that away")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise FileError(f"{path}: can't be written; make {there} writable or run elsewhere")
+    free = shutil.disk_usage(there).free
+    if free < SPACE:
+        raise FileError(
+            f"{path}: the disk is full ({free / 1e6:.0f} MB free, {SPACE / 1e6:.0f} MB needed); "
+            "make room and run again"
+        )
+
+
+def require_empty(folder: Path) -> None:
+    """Check that a folder holds nothing, or is not there yet.
+
+    Raises
+    ------
+    FileError
+        If it does.
+    """
+    if folder.exists() and not (folder.is_dir() and not any(folder.iterdir())):
+        raise FileError(
+            f"{folder}: not an empty folder; give one that is, or that is not there yet"
+        )
+
+
+@contextmanager
+def whole(path: Path) -> Iterator[Path]:
+    """Give a temporary name beside `path`, that is renamed to it once the file is complete.
+
+    Raises
+    ------
+    FileError
+        If the file can't be written; what stood at `path` before is still there.
+    """
+    # always the same name: what a killed process left is overwritten, not left lying about
+    temporary = path.with_name(f".{path.stem}.partial{path.suffix}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        yield temporary
+        temporary.replace(path)
+    except (OSError, RuntimeError) as error:
+        full = shutil.disk_usage(temporary.parent).free < _FULL if path.parent.is_dir() else False
+        why = "the disk is full" if full else reason(error)
+        raise FileError(f"{path}: can't be written ({why}); what was there is unchanged") from None
+    finally:
+        with contextlib.suppress(OSError):
+            temporary.unlink()

@@ -1,0 +1,75 @@
+"""`octsim archive`, `octsim verify` and `octsim unpack`: a run as one file, checked to the bit.
+
+What does the work is imported when it is asked for: the other commands need no dataset's library.
+"""
+
+import sys
+from argparse import Namespace
+from pathlib import Path
+from typing import Any
+
+
+def add(commands: Any) -> None:
+    """Add the commands to a parser's others."""
+    purpose = "pack a run for a data repository"
+    parser = commands.add_parser("archive", help=purpose, description=purpose)
+    parser.add_argument("folder", type=Path, help="of the run, as results/thesis")
+    parser.add_argument("--file", type=Path, help="to write (default: <folder>/<run>.zip)")
+    parser.add_argument(
+        "--config",
+        type=Path,
+        help="whose section archive has title, creators, license and date (default: that of the "
+        "archive which is replaced, where there is one)",
+    )
+    parser.set_defaults(do=archive, failed=1)
+    purpose = "check that an archive is as it was packed, to the last bit"
+    parser = commands.add_parser("verify", help=purpose, description=purpose)
+    parser.add_argument("path", type=Path, help="a zip, or the folder that it was unpacked to")
+    parser.set_defaults(do=verified, failed=1)
+    purpose = "verify an archive, then unpack it"
+    parser = commands.add_parser("unpack", help=purpose, description=purpose)
+    parser.add_argument("file", type=Path, help="a zip")
+    parser.add_argument("folder", type=Path, help="not there yet, or empty")
+    parser.set_defaults(do=unpacked, failed=1)
+
+
+def archive(given: Namespace) -> int:
+    """Pack a run; say what a user should know of it on stderr."""
+    from octsim.archive.pack import pack, told_before
+    from octsim.archive.run_folder import run_in
+    from octsim.config.load import load_config
+    from octsim.config.models import Config
+    from octsim.config.overlays import merge, read_overlay
+
+    folder = given.folder.expanduser()
+    run = run_in(folder).config
+    named = given.file and given.file.expanduser()
+    file = named or folder / f"{run.run}.zip"
+    overlay = read_overlay(given.config.expanduser()) if given.config else told_before(file)
+    said = load_config({key: part for key, part in overlay.items() if key == "archive"}).archive
+    data = merge(run.to_dict(), {"archive": said.model_dump(mode="json")})
+    packed = pack(folder, Config.model_validate(data), named)
+    for remark in packed.remarks:
+        print(f"octsim: warning: {remark}", file=sys.stderr)
+    print(packed)
+    return 0
+
+
+def verified(given: Namespace) -> int:
+    """Verify an archive."""
+    from octsim.archive.verify import verify
+
+    path = given.path.expanduser()
+    verify(path)
+    print(f"{path}: as it was packed")
+    return 0
+
+
+def unpacked(given: Namespace) -> int:
+    """Unpack an archive."""
+    from octsim.archive.verify import unpack
+
+    file, folder = given.file.expanduser(), given.folder.expanduser()
+    unpack(file, folder)
+    print(f"{folder}: unpacked, as it was packed")
+    return 0

@@ -1,0 +1,70 @@
+"""Sections of the config for the way from a phase to nanometres, and its worked example."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from octsim.config.fields import (
+    Number,
+    NumberTolerance,
+    PositiveLength,
+    Section,
+    TableRange,
+    Tolerance,
+    key,
+)
+from octsim.config.processing import PhaseEstimator
+from octsim.config.units import Length
+
+
+class Tolerances(Section):
+    """How well the instrument and the neuron are known: one standard deviation of each."""
+
+    diameter: Tolerance = key("20 nm", "of the neuron at rest; its focus is found with it")
+    gap: Tolerance = key("2 nm", "between the glass and the neuron")
+    glass: NumberTolerance = key(0.0005, "refractive index")
+    water: NumberTolerance = key(0.001, "refractive index")
+    neuron: NumberTolerance = key(0.002, "refractive index")
+    focus: Tolerance = key("10 nm", "from the focus that the law gives")
+    numerical_aperture: NumberTolerance = key(0.01, "of the objective")
+    detector_radius: Tolerance = key("2 nm", "R_det, of the fibre core's image at the focus")
+    wavelength_min: Tolerance = key("0.1 nm", "of the spectrometer, at the shortest")
+    wavelength_max: Tolerance = key("0.1 nm", "of the spectrometer, at the longest")
+
+
+class Calibration(Section):
+    """From a phase to nanometres, at a fixed focus and gap."""
+
+    diameters: TableRange = key(
+        {"start": "1 um", "stop": "2 um", "num": 51}, "of the neuron at rest"
+    )
+    step: Annotated[Length, Field(ge=1e-6, le=1e-2)] = key(
+        "0.1 nm", "of the diameter, to each side, over which the phase is differentiated"
+    )
+    estimator: PhaseEstimator = key(
+        "sinusoid", "of the phase, one of processing.estimator, with the options of processing"
+    )
+    tolerances: Tolerances = Tolerances()
+
+
+class ExpansionConfig(Section):
+    """A measured series of phases, for `snakemake expansion`."""
+
+    series: Annotated[str, Field(min_length=1)] | None = key(
+        None, "a CSV or netCDF file that holds time, phase and maybe phase_error"
+    )
+    diameter: PositiveLength = key("1.4 um", "of the neuron at rest")
+    rest: Annotated[int, Field(ge=1, le=1_000_000)] = key(
+        20, "samples at the start, whose mean phase is that of no expansion"
+    )
+
+
+class ActionPotential(Section):
+    """The worked example: a neuron that fires, for `snakemake action_potential`."""
+
+    diameter: PositiveLength = key("1.4 um", "of the neuron at rest")
+    expansion: Annotated[Length, Field(ge=1e-6, le=1e-2)] = key("1 nm", "at its largest")
+    photons: Annotated[Number, Field(ge=1, le=1e15)] = key(
+        1e8, "detected in each spectrum, as a mean"
+    )
+    seed: Annotated[int, Field(ge=0, le=2**32 - 1)] = key(1, "of the shot noise")

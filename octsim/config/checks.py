@@ -1,0 +1,135 @@
+"""What no single key can tell: configs that are impossible, and those that are likely not meant."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from pydantic import BaseModel
+
+from octsim.config.fields import DECIMALS, Range
+from octsim.config.models import Config, FocusLine
+from octsim.config.rounding import rounding_remarks
+from octsim.config.units import format_length
+from octsim.optics.two_beams import aliasing_step
+
+STEEP = 0.92
+"""Numerical aperture over the index of water, above which the scheme paths can miss light."""
+
+
+_FINEST = 10 * 10.0**-DECIMALS
+
+
+def _ranges(model: BaseModel, prefix: str = "") -> Iterator[tuple[str, Range]]:
+    for name in type(model).model_fields:
+        value = getattr(model, name)
+        if isinstance(value, Range):
+            yield prefix + name, value
+        elif isinstance(value, BaseModel):
+            yield from _ranges(value, f"{prefix}{name}.")
+
+
+def highest_focus(config: Config) -> tuple[str, float]:
+    """Give the key that asks for the highest focus known before a run, and that focus in µm."""
+    law = config.focus_law
+    # corners suffice: a product of two ranges is greatest at one
+    law_foci = np.outer(
+        [law.diameters.start, law.diameters.stop], [law.fraction.start, law.fraction.stop]
+    )
+    foci = {
+        "focus_scan.focus.stop": config.focus_scan.focus.stop,
+        "focus_law.fraction.stop": float(law_foci.max()),
+    }
+    if isinstance(config.sweep.focus, FocusLine):
+        ends = np.array([config.sweep.diameters.start, config.sweep.diameters.stop])
+        foci["sweep.focus"] = float(config.sweep.focus.at(ends).max())
+    return max(foci.items(), key=lambda item: item[1])
+
+
+def impossible(config: Config) -> Iterator[str]:
+    """Say what is impossible though each key alone is fine, a line each."""
+    aperture, glass = config.objective.numerical_aperture, config.scene.refractive_index.glass
+    if not aperture < glass:
+        yield (
+            f"objective.numerical_aperture: {aperture} given; it must be below the index of glass, "
+            f"scene.refractive_index.glass = {glass}"
+        )
+    band = config.spectrum.wavelength
+    if not band.min < band.max:
+        yield (
+            f"spectrum.wavelength.min: {format_length(band.min)} given; it must be below "
+            f"spectrum.wavelength.max = {format_length(band.max)}"
+        )
+    processing = config.processing
+    if processing.estimator == "sinusoid" and processing.sinusoid.envelope == "common":
+        yield (
+            "processing.sinusoid.envelope: 'common' given, which is for a series at one diameter; "
+            "a sweep needs 'each'"
+        )
+    for key, span in _ranges(config):
+        if not span.start < span.stop:
+            given = span.model_dump(mode="json")
+            yield (
+                f"{key}.start: {given['start']} given; it must be below {key}.stop = "
+                f"{given['stop']}"
+            )
+        step = (span.stop - span.start) / (span.num - 1)
+        if 0 < step < _FINEST:
+            yield (
+                f"{key}.num: {span.num} given; its values would be {step:.2g} apart, but are "
+                f"rounded to 1e-{DECIMALS}; give fewer, or a wider range"
+            )
+    key, focus = highest_focus(config)
+    distance = config.objective.focus_distance
+    if not distance > focus:
+        yield (
+            f"objective.focus_distance: {format_length(distance)} given; it must exceed every "
+            f"focus, and {key} asks for one at {format_length(focus)} (the objective lies in glass)"
+        )
+
+
+def _steep_remarks(config: Config) -> Iterator[str]:
+    aperture, water = config.objective.numerical_aperture, config.scene.refractive_index.water
+    if config.tracing.scheme == "paths" and STEEP * water < aperture:
+        yield (
+            f"tracing.scheme: 'paths' with a numerical aperture of {aperture}, above {STEEP} of "
+            f"the index of water, {water}: light near grazing incidence can be missed, and the "
+            "error with it; compare with 'vogel'"
+        )
+
+
+def plain_remarks(config: Config) -> list[str]:
+    """Say what is possible but likely not meant, a line each, of a config without a grid."""
+    said = list(_steep_remarks(config))
+    band, diameters = config.spectrum.wavelength, config.sweep.diameters
+    n_neuron = config.scene.refractive_index.neuron
+    k_min, k_max = 2 * np.pi / band.max, 2 * np.pi / band.min
+    step = (diameters.stop - diameters.start) / (diameters.num - 1)
+    largest = aliasing_step(n_neuron, k_min, k_max)
+    if step > largest:
+        said.append(
+            f"sweep.diameters: a step of {step:.6g} um is above π/(n_neuron (k_min + k_max)) = "
+            f"{largest:.6g} um, so the unwrapped phase is ambiguous and its slope can be wrong; "
+            "raise sweep.diameters.num"
+        )
+    oscillations = n_neuron * (k_max - k_min) / np.pi  # of cos(2ndk) over the band, per µm
+    if oscillations * diameters.start < 1:
+        said.append(
+            f"sweep.diameters.start: {format_length(diameters.start)} is less than one oscillation "
+            f"of the spectrum, {1 / oscillations:.3g} um, so its phase means little; raise it or "
+            "widen spectrum.wavelength"
+        )
+    needed = int(np.ceil(2 * oscillations * diameters.stop)) + 1
+    if config.spectrum.samples < needed:
+        said.append(
+            f"spectrum.samples: {config.spectrum.samples} do not resolve the oscillations of the "
+            f"largest diameter; give {needed} or more"
+        )
+    fitted = config.focus_law.diameters
+    beyond = diameters.start < fitted.start or diameters.stop > fitted.stop
+    if config.sweep.focus == "law" and beyond:
+        said.append(
+            f"sweep.diameters: from {format_length(diameters.start)} to "
+            f"{format_length(diameters.stop)} is beyond the diameters that the focus law is fitted "
+            f"to, {format_length(fitted.start)} to {format_length(fitted.stop)}; widen "
+            "focus_law.diameters"
+        )
+    return said + rounding_remarks(config)

@@ -1,0 +1,88 @@
+"""What the config's sections are made of: numbers, lengths and ranges with their limits."""
+
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+
+from octsim.config.units import Length
+
+
+def _number(value: object) -> object:
+    # YAML 1.1 reads 1e-6 (no dot) as text; what is plainly a number in that notation is one.
+    if isinstance(value, str) and ("e" in value or "E" in value):
+        try:
+            return float(value)
+        except ValueError:
+            return value
+    return value
+
+
+Number = Annotated[float, BeforeValidator(_number), Field(allow_inf_nan=False)]
+PositiveLength = Annotated[Length, Field(ge=1e-6, le=1e6)]  # 1 pm to 1 m
+Position = Annotated[Length, Field(ge=-1e6, le=1e6)]
+Wavelength = Annotated[Length, Field(ge=1e-3, le=1e3)]  # 1 nm to 1 mm
+PositiveNumber = Annotated[Number, Field(ge=1e-6, le=1e6)]
+Tolerance = Annotated[Length, Field(ge=0, le=1e6)]
+NumberTolerance = Annotated[Number, Field(ge=0, le=1)]
+Index = Annotated[Number, Field(ge=1, le=10)]
+
+
+DECIMALS = 12
+"""Of a micrometre, to which evenly spaced values are rounded: an attometre."""
+
+
+class Section(BaseModel):
+    """A part of the config: frozen, with no room for keys that it does not know."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, validate_default=True)
+
+
+class Range(Section):
+    """Evenly spaced values, both ends included; start is below stop."""
+
+    start: float
+    stop: float
+    num: Annotated[int, Field(ge=2, le=1_000_000)]
+
+    def values(self) -> NDArray[np.float64]:
+        """Give the values, shape (num,), in µm where they are lengths.
+
+        They are rounded far below a femtometre: a value that two ranges share has the same bits.
+        """
+        return np.round(np.linspace(self.start, self.stop, self.num), DECIMALS)
+
+
+class FocusRange(Range):
+    """Evenly spaced heights of the focus."""
+
+    start: Position
+    stop: Position
+
+
+class DiameterRange(Range):
+    """Evenly spaced diameters."""
+
+    start: PositiveLength
+    stop: PositiveLength
+
+
+class TableRange(DiameterRange):
+    """Evenly spaced diameters, enough to interpolate between."""
+
+    num: Annotated[int, Field(ge=8, le=1_000_000)]
+
+
+class FractionRange(Range):
+    """Evenly spaced fractions of a diameter, enough to fit a Gaussian plus a constant over."""
+
+    start: Annotated[Number, Field(ge=-1e6, le=1e6)]
+    stop: Annotated[Number, Field(ge=-1e6, le=1e6)]
+    num: Annotated[int, Field(ge=4, le=1_000_000)]
+
+
+def key(default: object, description: str) -> Any:
+    """Declare a key: its default, written as a user would write it ("5 nm"), and its meaning."""
+    # typed Any: the default is validated
+    return Field(default, description=description)

@@ -1,0 +1,177 @@
+"""A config that varies its keys: the axes of the grid, and the config at each combination."""
+
+import re
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+import yaml
+
+from octsim.base.errors import ConfigError
+from octsim.config.checks import plain_remarks
+from octsim.config.messages import known_keys
+from octsim.config.models import PRESETS, Config
+from octsim.config.overlays import merge, preset
+from octsim.datasets.variables import MEANINGS
+
+FIXED = (
+    "run", "calibration", "expansion", "action_potential", "grid", "archive", "cache", "budget",
+    "scatter",
+)  # fmt: skip
+"""Sections that a run has once: what no stage over the grid depends on."""
+_PRESET = "tracing.preset"
+_NUMBERS = re.compile(r"[-+]?[0-9][0-9.e+-]*")
+
+
+class Axis(NamedTuple):
+    """One dimension of the grid."""
+
+    name: str
+    """Name of the dimension in datasets."""
+    keys: tuple[str, ...]
+    """Dotted keys that vary along it: one, or those that are zipped."""
+    rows: tuple[tuple[Any, ...], ...]
+    """Value of each key, as plain data, at each position."""
+
+
+class Combination(NamedTuple):
+    """One point of the grid."""
+
+    position: tuple[int, ...]
+    """Position along each axis."""
+    values: Mapping[str, Any]
+    """What each varied key is, as plain data."""
+    config: Config
+    """The config there, without a grid."""
+
+    def __str__(self) -> str:
+        return ", ".join(f"{key} = {as_text(value)}" for key, value in self.values.items())
+
+
+def as_text(value: Any) -> str:
+    """Write a value of the config as a user would."""
+    if isinstance(value, Mapping | list | tuple | bool) or value is None:
+        text: str = yaml.safe_dump(value, default_flow_style=True, width=10_000)
+        return text.removesuffix("...\n").strip()
+    return str(value)
+
+
+def value_at(config: Config, key: str) -> Any:
+    """Give what a dotted key of a config is, in its own units; None if it has no such part."""
+    value: Any = config
+    for name in key.split("."):
+        value = getattr(value, name, None)
+    return value
+
+
+def overlap(one: str, other: str) -> bool:
+    """Tell whether one of two dotted keys is the other, or holds it."""
+    return f"{one}.".startswith(f"{other}.") or f"{other}.".startswith(f"{one}.")
+
+
+def bears_on(key: str, *read: str) -> bool:
+    """Tell whether a varied key sets any of some others, or parts of them."""
+    # a preset stands for other keys
+    sets = (key, *(f"tracing.{name}" for name in PRESETS["draft"])) if key == _PRESET else (key,)
+    return any(overlap(one, other) for one in sets for other in read)
+
+
+@cache
+def dimension_name(key: str) -> str:
+    """Name the dimension of a dotted key by its last part, or by as many as tell it from others.
+
+    Examples
+    --------
+    >>> dimension_name("detector.core_diameter"), dimension_name("spectrum.wavelength.min")
+    ('core_diameter', 'wavelength_min')
+    """
+    parts = key.split(".")
+    known = [parts for parts in (k.split(".") for k in known_keys()) if parts[0] not in FIXED]
+    # below a subsection the last part alone says little: neuron, min
+    for count in range(min(len(parts) - 1, 2), len(parts)):
+        tail = parts[-count:]
+        alike = sum(other[-count:] == tail for other in known)
+        if alike == 1 and "_".join(tail) not in MEANINGS:
+            return "_".join(tail)
+    return "_".join(parts)
+
+
+def axes(config: Config, *keys: str) -> tuple[Axis, ...]:
+    """Give the axes of a config's grid.
+
+    Parameters
+    ----------
+    config : Config
+        A checked config.
+    *keys : str
+        Dotted keys: only what varies these, or parts of them, counts. Without any, all does.
+    """
+    varied = {
+        key: tuple(values)
+        for key, values in config.grid.varied.items()
+        if not keys or bears_on(key, *keys)
+    }
+    if config.grid.combine == "product":
+        return tuple(
+            Axis(dimension_name(key), (key,), tuple((value,) for value in values))
+            for key, values in varied.items()
+        )
+    if not varied:
+        return ()
+    # of rows that only differ in what does not count, one is enough
+    rows = {as_text(list(row)): row for row in zip(*varied.values(), strict=True)}
+    return (Axis("combination", tuple(varied), tuple(rows.values())),)
+
+
+def combinations(config: Config, *keys: str) -> Iterator[Combination]:
+    """Give every combination of the grid, as far as it varies some keys: the last axis fastest."""
+    along = axes(config, *keys)
+    base = {**config.to_dict(), "grid": {}}
+    for position in np.ndindex(*(len(axis.rows) for axis in along)):
+        values = {
+            key: value
+            for axis, row in zip(along, position, strict=True)
+            for key, value in zip(axis.keys, axis.rows[row], strict=True)
+        }
+        yield Combination(position, values, config_at(base, values))
+
+
+def config_at(base: Mapping[str, Any], values: Mapping[str, Any]) -> Config:
+    """Give a config, of plain data, with some dotted keys at other values."""
+    laid: dict[str, Any] = {}
+    for key, value in values.items():
+        for name in reversed(key.split(".")):
+            value = {name: value}
+        laid = merge(laid, value)
+    return Config.model_validate(merge(merge(base, preset(laid)), laid))
+
+
+def remarks(config: Config) -> list[str]:
+    """Say what is possible but likely not meant, a line each, of all combinations together."""
+    if not config.grid.varied:
+        return plain_remarks(config)
+    said: dict[str, list[str]] = {}
+    total = 0
+    for combination in combinations(config):
+        total += 1
+        for remark in plain_remarks(combination.config):
+            said.setdefault(_NUMBERS.sub("", remark), []).append(remark)
+    return [f"{lines[0]} (at {len(lines)} of {total} combinations)" for lines in said.values()]
+
+
+def without_grid(config: Config, target: str) -> Config:
+    """Give a config that varies nothing.
+
+    Raises
+    ------
+    ConfigError
+        If it varies something, as a target of a single config can't.
+    """
+    if config.grid.varied:
+        keys = ", ".join(config.grid.varied)
+        raise ConfigError(
+            f"grid: {keys} given, but {target} is of a single config; ask for it in a config "
+            "without a grid"
+        )
+    return config

@@ -1,0 +1,169 @@
+"""Values of a grid: written out as lists and checked, each alone and all combinations."""
+
+import itertools
+import math
+from collections import Counter
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+
+from octsim.base.errors import ConfigError
+from octsim.config.checks import impossible
+from octsim.config.fields import DECIMALS
+from octsim.config.grid import FIXED, as_text, axes, combinations, config_at, overlap, value_at
+from octsim.config.messages import explain, known_keys, nearest_key
+from octsim.config.models import Config, Grid
+from octsim.config.units import format_length, parse_length
+from octsim.datasets.catalog import part_of
+
+MOST = 100_000
+"""Combinations of one grid."""
+_SHOWN = 5  # problems of combinations that are listed
+
+
+def expanded(config: Config) -> Config:
+    """Check a config's grid as a whole, and write its values out as lists in the config's units.
+
+    Raises
+    ------
+    ConfigError
+        If a key is unknown or can't be varied, its values are none or wrong, or a combination is
+        impossible. One line for each problem.
+    """
+    listed = {key: _listed(key, given) for key, given in config.grid.varied.items()}
+    _check_keys(config, listed)
+    given = config.model_copy(update={"grid": _grid(config, listed)})
+    problems: dict[str, None] = {}
+    plain = {key: list(values) for key, values in listed.items()}
+    base = {**given.to_dict(), "grid": {}}
+    firsts = {key: values[0] for key, values in listed.items()}
+    for key, values in listed.items():
+        for position, value in enumerate(values):
+            others = {k: v[position] for k, v in listed.items()} if _zipped(config) else firsts
+            try:
+                one = config_at(base, {**others, key: value})
+            except ValidationError as error:
+                for line in map(explain, error.errors()):
+                    of_grid = any(overlap(line.split(":")[0], other) for other in listed)
+                    problems[f"grid.{line}" if of_grid else line] = None
+            else:
+                plain[key][position] = part_of(one.to_dict(), key)
+    _raise(problems)
+    checked = given.model_copy(update={"grid": _grid(config, plain)})
+    _check_rows(checked)
+    for combination in combinations(checked):
+        for line in impossible(combination.config):
+            problems[f"grid, at {combination}: {line}"] = None
+    _raise(problems)
+    return checked
+
+
+def _zipped(config: Config) -> bool:
+    return config.grid.combine == "zip"
+
+
+def _grid(config: Config, values: Mapping[str, list[Any]]) -> Grid:
+    return Grid.model_validate({"combine": config.grid.combine, **values})
+
+
+def _raise(problems: Mapping[str, None]) -> None:
+    lines = list(problems)
+    if len(lines) > _SHOWN:
+        lines[_SHOWN:] = [f"grid: and {len(lines) - _SHOWN} problems more"]
+    if lines:
+        raise ConfigError("\n".join(lines))
+
+
+def _listed(key: str, given: Any) -> list[Any]:
+    """Write out the values of one key."""
+    known = set(known_keys())
+    if key not in known:
+        raise ConfigError(
+            f"grid.{key}: unknown key; write it with dots, as in detector.core_diameter: [...]; "
+            f"the nearest known one is {nearest_key(key)}"
+        )
+    if key.split(".")[0] in FIXED:
+        raise ConfigError(f"grid.{key}: can't be varied; a run has one")
+    if isinstance(given, list | tuple):
+        if not given:
+            raise ConfigError(f"grid.{key}: [] given; list one value or more")
+        return list(given)
+    if isinstance(given, Mapping) and set(given) == {"start", "stop", "num"}:
+        if f"{key}.num" in known:
+            raise ConfigError(
+                f"grid.{key}: {dict(given)} given, but it is itself a range: vary {key}.num, or "
+                "list whole ranges"
+            )
+        return _spaced(key, given)
+    inner = [f"{key}.{name}" for name in given] if isinstance(given, Mapping) else []
+    if inner and set(inner) <= known:
+        raise ConfigError(
+            f"grid.{key}: {given!r} given; keys don't nest here: write grid: {{{inner[0]}: [...]}}"
+        )
+    if isinstance(given, Mapping) and {"start", "stop"} & set(given):
+        raise ConfigError(
+            f"grid.{key}: {dict(given)} given; a range has start, stop and num, and nothing else"
+        )
+    raise ConfigError(
+        f"grid.{key}: {given!r} given; it should be a list of values, or a range "
+        "{start: ..., stop: ..., num: ...}"
+    )
+
+
+def _spaced(key: str, given: Mapping[str, Any]) -> list[Any]:
+    ends, num = [given["start"], given["stop"]], given["num"]
+    if any(isinstance(end, bool) for end in ends):
+        raise ConfigError(f"grid.{key}: {dict(given)} given; both ends should be numbers")
+    if not isinstance(num, int) or isinstance(num, bool) or not 2 <= num <= MOST:
+        raise ConfigError(f"grid.{key}.num: {num!r} given; a range has 2 to {MOST} values")
+    lengths = all(isinstance(end, str) and end.strip()[-1:].isalpha() for end in ends)
+    try:
+        start, stop = [parse_length(end) if lengths else float(end) for end in ends]
+    except (TypeError, ValueError):
+        raise ConfigError(
+            f"grid.{key}: {dict(given)} given; both ends should be numbers, or both lengths with "
+            "their unit"
+        ) from None
+    if not (math.isfinite(start) and math.isfinite(stop) and start < stop):
+        raise ConfigError(
+            f"grid.{key}.start: {ends[0]} given; it must be below grid.{key}.stop = {ends[1]}, "
+            "or the range is empty"
+        )
+    values: list[float] = np.round(np.linspace(start, stop, num), DECIMALS).tolist()
+    if lengths:
+        return [format_length(value) for value in values]
+    if not all(isinstance(end, int) for end in ends):
+        return values
+    if not all(map(float.is_integer, values)) and isinstance(value_at(Config(), key), int):
+        raise ConfigError(
+            f"grid.{key}: {dict(given)} given; its {num} values are not all whole numbers; choose "
+            "a num that divides the range, or list them"
+        )
+    return [int(value) if value.is_integer() else value for value in values]
+
+
+def _check_keys(config: Config, listed: Mapping[str, list[Any]]) -> None:
+    for one, other in itertools.combinations(listed, 2):
+        if overlap(one, other):
+            raise ConfigError(f"grid.{one}: given beside grid.{other}, and both set the same key")
+    counts = {key: len(values) for key, values in listed.items()}
+    if _zipped(config) and len(set(counts.values())) > 1:
+        told = ", ".join(f"{key} has {count}" for key, count in counts.items())
+        raise ConfigError(f"grid: zipped keys need as many values each, but {told}")
+    total = max(counts.values()) if _zipped(config) else math.prod(counts.values())
+    if total > MOST:
+        raise ConfigError(f"grid: {total} combinations; at most {MOST} are made in one run")
+
+
+def _check_rows(config: Config) -> None:
+    """Refuse a combination that stands twice."""
+    count = max(len(values) for values in config.grid.varied.values())
+    for axis in axes(config):
+        texts = [as_text(list(row)) for row in axis.rows]
+        twice, times = Counter(texts).most_common(1)[0]
+        if times > 1:
+            raise ConfigError(f"grid.{axis.keys[0]}: {twice} stands twice; give each value once")
+        if _zipped(config) and len(texts) < count:
+            raise ConfigError("grid: a zipped combination stands twice; give each once")

@@ -1,0 +1,94 @@
+"""What is wrong with a config, said in one clear line for each problem."""
+
+import difflib
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from pydantic import BaseModel
+from pydantic_core import ErrorDetails
+
+from octsim.config.archive import Creator
+from octsim.config.models import Config, FocusLine
+
+
+def known_keys(model: type[BaseModel] | BaseModel = Config, prefix: str = "") -> Iterator[str]:
+    """Give the dotted path of every key of the config, sections before what they hold."""
+    model = model() if isinstance(model, type) else model
+    for name in type(model).model_fields:
+        yield prefix + name
+        value = getattr(model, name)
+        if isinstance(value, BaseModel):
+            yield from known_keys(value, f"{prefix}{name}.")
+    if isinstance(model, Config):
+        yield from (f"sweep.focus.{name}" for name in FocusLine.model_fields)
+        yield from (f"archive.creators.{name}" for name in Creator.model_fields)
+
+
+def nearest_key(key: str) -> str:
+    """Give the known key that is most like `key`: in its own section, else by its last part."""
+    section, _, name = key.rpartition(".")
+    keys = list(known_keys())
+    siblings = {k.rpartition(".")[2]: k for k in keys if k.rpartition(".")[0] == section}
+    everywhere = {k.rpartition(".")[2]: k for k in reversed(keys)}
+    initials = {"".join(word[0] for word in k.split("_")): path for k, path in siblings.items()}
+    for candidates, likeness in ((initials, 1), (siblings, 0.6), (everywhere, 0.6), (siblings, 0)):
+        close = difflib.get_close_matches(name, candidates, n=1, cutoff=likeness)
+        if close:
+            return candidates[close[0]]
+    return difflib.get_close_matches(key, keys, n=1, cutoff=0)[0]
+
+
+_OF_TWO_KINDS = (["sweep", "focus"], ["processing", "window"], ["processing", "depth"])
+
+
+def explain(error: ErrorDetails) -> str:
+    """Say in one line which key is wrong, what was given, and what to do."""
+    place = [str(part) for part in error["loc"]]
+    if place[:2] in _OF_TWO_KINDS:
+        del place[2:3]  # which of the two it was read as
+    path = ".".join(place)
+    entry = ".".join(part for part in place if not part.isdigit())  # of a list, any of its entries
+    listed = isinstance(error["input"], list | tuple) and error["type"] != "model_type"
+    varies = listed and place[0] != "archive"  # a run has one
+    key = next((name for name in (place[-1], path) if name in set(known_keys())), None)
+    if varies and key and key != "processing.window":
+        return (
+            f"{path}: {error['input']!r} given; several values of one key stand in the grid: "
+            f"write grid: {{{key}: [...]}}"
+        )
+    if "." in place[-1] and error["type"] == "extra_forbidden":
+        return f"{path}: unknown key; keys nest, so write {place[-1].replace('.', ': {')}: ...}}"
+    if error["type"] == "extra_forbidden":
+        return f"{path}: unknown key; the nearest known one is {nearest_key(entry)}"
+    if error["type"] == "missing":
+        return f"{path}: missing; it has no default, so give it a value"
+    message = error["msg"].removeprefix("Value error, ").replace("Input should", "it should")
+    if path == "run":
+        message = "it should be a plain name as text: letters, digits, '.', '_' and '-', no path"
+        if not isinstance(error["input"], str):
+            message += "; put it in quotes"
+    elif error["type"] in {"model_type", "model_attributes_type"}:
+        message = "it should be a mapping of keys to values"
+    elif path == "sweep.focus":
+        message = (
+            "it should be 'law', or {slope: 0.581, intercept: 69 nm}; slope 0 is a fixed focus"
+        )
+    elif error["type"] == "literal_error" and isinstance(error["input"], str):
+        known = re.findall(r"'([^']+)'", message)
+        nearest = difflib.get_close_matches(error["input"], known, n=1, cutoff=0)[0]
+        message = f"the nearest that is known is '{nearest}'; {message}"
+    elif error["type"] == "int_type":
+        message = "it should be a whole number, written out as digits"
+    elif error["type"] in {"greater_than_equal", "less_than_equal"} and unit_of(path) == "um":
+        message += " um"
+    return f"{path}: {error['input']!r} given; {message}"
+
+
+def unit_of(key: str) -> str:
+    """Give the unit of a key of the config: um where it is a length, else 1."""
+    value: Any = Config().to_dict()
+    for part in key.split("."):
+        value = value.get(part) if isinstance(value, dict) else None
+    length = isinstance(value, str) and value.endswith(" um")
+    return "um" if length or key == "sweep.focus.intercept" else "1"

@@ -1,0 +1,262 @@
+"""The config: what a user may set, its defaults (the thesis) and its limits.
+
+The models are the one source: `config/schema.json` and `docs/config.md` are generated from them,
+`config/default.yaml` is tested against them.
+"""
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag
+
+from octsim.config.archive import ArchiveConfig
+from octsim.config.calibration import ActionPotential, Calibration, ExpansionConfig
+from octsim.config.fields import (
+    DiameterRange,
+    FocusRange,
+    FractionRange,
+    Index,
+    Number,
+    Position,
+    PositiveLength,
+    PositiveNumber,
+    Section,
+    Wavelength,
+)
+from octsim.config.fields import key as _key
+from octsim.config.processing import Processing as Processing
+from octsim.config.units import Length
+
+
+class RefractiveIndex(Section):
+    """Refractive indices of the three media."""
+
+    glass: Index = _key(1.52, "slide and immersion oil")
+    water: Index = _key(1.33, "around the neuron")
+    neuron: Index = _key(1.39, "the cylinder")
+
+
+class SceneConfig(Section):
+    """What the light meets: a cylinder over a glass slide, in water."""
+
+    refractive_index: RefractiveIndex = RefractiveIndex()
+    gap: Annotated[Length, Field(ge=0, le=1e6)] = _key(
+        "5 nm", "water between the glass and the neuron"
+    )
+
+
+class Objective(Section):
+    """The objective lens, an ideal thin one."""
+
+    numerical_aperture: PositiveNumber = _key(1.2, "below the index of glass")
+    focus_distance: PositiveLength = _key(
+        "300 um", "from the objective plane to the focus; beyond every focus"
+    )
+    magnification: PositiveNumber = _key(20.0, "object to fibre")
+
+
+class DetectorConfig(Section):
+    """The fibre that collects the light."""
+
+    core_diameter: PositiveLength = _key(
+        "4.4 um", "of the fibre; R_det = core_diameter / (2 magnification)"
+    )
+
+
+PRESETS: Mapping[str, Mapping[str, Any]] = {
+    "draft": {"scheme": "paths", "accuracy": 3e-2},
+    "standard": {"scheme": "paths", "accuracy": 1e-4},
+    "reference": {"scheme": "paths", "accuracy": 1e-8},
+}
+"""Points of the trade of cost for accuracy: `snakemake tradeoff` measures them."""
+
+
+class Tracing(Section):
+    """How rays are placed and how far each is followed."""
+
+    preset: Literal["draft", "standard", "reference"] | None = _key(
+        None, "a named scheme and accuracy, for those that are not given beside it"
+    )
+    scheme: Literal["vogel", "paths"] = _key(
+        "vogel", "the thesis's sunflower spiral, or each light path to a stated accuracy"
+    )
+    accuracy: Annotated[Number, Field(ge=1e-12, le=0.1)] = _key(
+        1e-4, "of the scheme paths: largest error of the intensity over the largest intensity"
+    )
+    rays: Annotated[int, Field(ge=1, le=10_000_000)] = _key(3000, "at the objective")
+    max_intersections: Annotated[int, Field(ge=1, le=30)] = _key(
+        11, "meetings with the plane and the cylinder on one ray"
+    )
+    min_amplitude: Annotated[Number, Field(ge=0, lt=1)] = _key(
+        0.0, "a fainter ray is dropped; relative to the launch amplitude; of the scheme vogel"
+    )
+
+
+class Wavelengths(Section):
+    """The band, in vacuum."""
+
+    min: Wavelength = _key("650 nm", "shortest wavelength")
+    max: Wavelength = _key("900 nm", "longest wavelength")
+
+
+class Spectrum(Section):
+    """The flat spectrum of the source and the samples taken of it."""
+
+    wavelength: Wavelengths = Wavelengths()
+    samples: Annotated[int, Field(ge=2, le=1_000_000)] = _key(
+        1000, "wavenumbers, evenly spaced, both ends included"
+    )
+
+
+class FocusScan(Section):
+    """Figure 6: one diameter, many foci."""
+
+    diameter: PositiveLength = _key("2 um", "of the cylinder")
+    focus: FocusRange = _key(
+        {"start": "-1 um", "stop": "4 um", "num": 501},
+        "height of the focus above the glass",
+    )
+
+
+class FocusLawConfig(Section):
+    """Figure 7: the focus of greatest intensity for some diameters, and the line through them."""
+
+    diameters: DiameterRange = _key(
+        {"start": "0.8 um", "stop": "2.4 um", "num": 9}, "of the cylinder"
+    )
+    fraction: FractionRange = _key(
+        {"start": 0.4, "stop": 0.8, "num": 41},
+        "foci tried, as fractions of the diameter",
+    )
+
+
+class FocusLine(Section):
+    """A given focus law: focus = slope · diameter + intercept; slope 0 is a fixed focus."""
+
+    slope: Annotated[Number, Field(ge=-1e6, le=1e6)]
+    intercept: Position
+
+    @classmethod
+    def fitted(cls, law: Any) -> "FocusLine":
+        """Give the line of a fitted law: a `focus_law` dataset."""
+        return cls.model_construct(slope=float(law["slope"]), intercept=float(law["intercept"]))
+
+    def at(self, diameter: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Give the focus for each diameter, both in µm."""
+        return self.slope * diameter + self.intercept
+
+
+def _focus_kind(value: object) -> str:
+    return "line" if isinstance(value, Mapping | FocusLine) else "law"
+
+
+class Sweep(Section):
+    """Figures 8 to 12: the diameters whose spectra are made."""
+
+    diameters: DiameterRange = _key(
+        {"start": "1 um", "stop": "2 um", "num": 151}, "of the cylinder"
+    )
+    focus: Annotated[
+        Annotated[Literal["law"], Tag("law")] | Annotated[FocusLine, Tag("line")],
+        Discriminator(_focus_kind),
+    ] = _key("law", "law (the fitted one), or {slope: 0.581, intercept: 69 nm}")
+
+
+class Grid(Section):
+    """Keys that are varied: each dotted key has a list of values or a range of them.
+
+    A checked config holds them as lists, in the config's own units.
+    """
+
+    model_config = ConfigDict(
+        extra="allow",
+        json_schema_extra={
+            "additionalProperties": {
+                "description": "a dotted key of the config, and the values that it takes",
+                "anyOf": [
+                    {"type": "array", "minItems": 1},
+                    {
+                        "type": "object",
+                        "properties": {
+                            "start": {"type": ["number", "string"]},
+                            "stop": {"type": ["number", "string"]},
+                            "num": {"type": "integer", "minimum": 2},
+                        },
+                        "required": ["start", "stop", "num"],
+                        "additionalProperties": False,
+                    },
+                ],
+            }
+        },
+    )
+
+    combine: Literal["product", "zip"] = _key(
+        "product", "every value with every other, or first with first and so on"
+    )
+
+    @property
+    def varied(self) -> Mapping[str, Any]:
+        """Values of each varied key."""
+        return self.model_extra or {}
+
+
+class Cache(Section):
+    """Where traced points are kept; no result depends on it."""
+
+    file: Annotated[str, Field(min_length=1)] = _key(
+        ".octsim/points.sqlite", "of this folder, or one that several share"
+    )
+    gigabytes: Annotated[Number, Field(ge=0, le=1e6)] = _key(
+        4.0, "its largest size; 0 keeps and reads nothing"
+    )
+
+
+class Budget(Section):
+    """What a run may take by its estimate; raise it to confirm a larger one."""
+
+    cpu_hours: PositiveNumber = _key(1.0, "processor time")
+    disk_gigabytes: PositiveNumber = _key(20.0, "datasets of the run")
+
+
+class Scatter(Section):
+    """How a stage that takes long is scattered over several jobs; no result depends on it."""
+
+    minutes: PositiveNumber = _key(5.0, "of processor time in a job, by the run's estimate")
+
+
+_NO_RESULT = ("archive", "cache", "scatter")
+
+
+class Config(Section):
+    """A whole run. Every value has the thesis's as its default."""
+
+    run: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=100)] = _key(
+        "thesis", "name of the run: datasets and figures go to results/<run>/"
+    )
+    scene: SceneConfig = SceneConfig()
+    objective: Objective = Objective()
+    detector: DetectorConfig = DetectorConfig()
+    tracing: Tracing = Tracing()
+    spectrum: Spectrum = Spectrum()
+    focus_scan: FocusScan = FocusScan()
+    focus_law: FocusLawConfig = FocusLawConfig()
+    sweep: Sweep = Sweep()
+    processing: Processing = Processing()
+    calibration: Calibration = Calibration()
+    expansion: ExpansionConfig = ExpansionConfig()
+    action_potential: ActionPotential = ActionPotential()
+    grid: Annotated[Grid, BeforeValidator(lambda given: {} if given is None else given)] = Grid()
+    archive: ArchiveConfig = ArchiveConfig()
+    cache: Cache = Cache()
+    budget: Budget = Budget()
+    scatter: Scatter = Scatter()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give the config as plain data that `load_config` reads back to the same bits."""
+        return self.model_dump(mode="json")
+
+    def to_record(self) -> dict[str, Any]:
+        """Give what results can depend on, as plain data: what their datasets record."""
+        return {k: part for k, part in self.to_dict().items() if k not in _NO_RESULT}

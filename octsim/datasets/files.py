@@ -1,0 +1,188 @@
+"""Datasets: what each variable means, where a dataset came from, and files that appear whole."""
+
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from enum import IntEnum
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import netCDF4
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from octsim.base.environment import environment
+from octsim.base.errors import DatasetError
+from octsim.base.files import reason, whole
+from octsim.base.provenance import source_digest
+from octsim.config.models import Config
+from octsim.datasets.catalog import differing
+from octsim.datasets.variables import meaning
+from octsim.datasets.versions import SCHEMA, upgraded
+
+CHUNK_CACHE = 1_000_000
+"""Bytes that are held of each variable that is read or written in chunks."""
+_COMPRESSION = {"zlib": True, "complevel": 4, "shuffle": True}
+
+
+def make(
+    stage: str,
+    config: Config,
+    title: str,
+    variables: Mapping[str, Any],
+    coordinates: Mapping[str, Any],
+    module: str,
+) -> xr.Dataset:
+    """Put a stage's results together with what they mean and what made them.
+
+    Parameters
+    ----------
+    stage : str
+        Name of the stage; the dataset's file is ``<stage>.nc``.
+    config : Config
+        The config that the results follow from.
+    title : str
+        One line on what is held.
+    variables, coordinates : mapping
+        As `xarray.Dataset` takes them; each name has its entry in `MEANINGS`.
+    module : str
+        Module that the stage's function stands in, for the digest of the sources.
+    """
+    dataset = xr.Dataset(variables, coordinates)
+    for name in map(str, dataset.variables):
+        dataset[name].attrs = meaning(name) | dataset[name].attrs
+    dataset.attrs = attributes(stage, config, title, module)
+    return dataset
+
+
+def attributes(stage: str, config: Config, title: str, module: str) -> dict[str, Any]:
+    """Give what a stage's dataset says of itself: what it is, and all it takes to make it again."""
+    return {
+        "Conventions": "CF-1.11",
+        "title": title,
+        "stage": stage,
+        "schema_version": SCHEMA,
+        "config": json.dumps(config.to_record()),
+        "octsim_version": version("octsim"),
+        "environment": json.dumps(environment()),
+        "source_digest": source_digest(module),
+        "creation_command": (
+            "save the attribute 'config' of this file as config.json, then: "
+            f".venv/bin/snakemake results/{config.run}/{stage}.nc --cores 2 "
+            "--configfile config.json"
+        ),
+    }
+
+
+def write(dataset: xr.Dataset, path: str | Path) -> None:
+    """Write a dataset so that the file is there whole or not at all.
+
+    Raises
+    ------
+    FileError
+        If it can't be written; what stood at `path` before is still there.
+    """
+    encoding = {
+        name: (_COMPRESSION if variable.ndim and variable.dtype.kind in "iuf" else {})
+        | ({"_FillValue": None} if variable.dtype.kind == "f" else {})
+        for name, variable in dataset.variables.items()
+    }
+    with whole(Path(path)) as temporary:
+        dataset.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
+
+
+def read(
+    path: str | Path,
+    stage: str | None = None,
+    config: Config | None = None,
+    without: Iterable[str] = (),
+) -> xr.Dataset:
+    """Read a stored dataset into memory, as this octsim writes it.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    stage : str, optional
+        Stage that it has to be of.
+    config : Config, optional
+        Config that it has to follow from, as far as its stage depends on one.
+    without : iterable of str
+        Variables that are not read.
+
+    Raises
+    ------
+    DatasetError
+        If the file is missing, damaged, not a dataset of that stage, made from another config, or
+        of a version of octsim that this one can't read.
+    """
+    with opened(path, stage, config) as dataset:
+        try:
+            return dataset.drop_vars(list(without), errors="ignore").load()
+        except (OSError, RuntimeError, ValueError) as error:
+            raise _unreadable(Path(path), error) from None
+
+
+@contextmanager
+def opened(
+    path: str | Path, stage: str | None = None, config: Config | None = None
+) -> Iterator[xr.Dataset]:
+    """Open a stored dataset, to read parts of it.
+
+    Parameters and what is raised are those of `read`.
+    """
+    path = Path(path)
+    usual = netCDF4.get_chunk_cache()
+    netCDF4.set_chunk_cache(CHUNK_CACHE)  # or each variable would keep 64 MB of what was read
+    try:
+        dataset = xr.open_dataset(path, engine="netcdf4", cache=False)
+    except FileNotFoundError:
+        remedy = f"run the stage {stage} first" if stage else "give a dataset of octsim"
+        raise DatasetError(f"{path}: not there; {remedy}") from None
+    except (OSError, RuntimeError, ValueError) as error:
+        raise _unreadable(path, error) from None
+    finally:
+        netCDF4.set_chunk_cache(*usual)
+    with dataset:
+        yield _checked(dataset, path, stage, config)
+
+
+def _remedy(path: Path) -> str:
+    return f"move it away and run again to make {path.name} anew"
+
+
+def _unreadable(path: Path, error: Exception) -> DatasetError:
+    return DatasetError(f"{path}: can't be read ({reason(error)}); {_remedy(path)}")
+
+
+def _checked(
+    dataset: xr.Dataset, path: Path, stage: str | None, config: Config | None
+) -> xr.Dataset:
+    """Refuse a dataset of another stage, config or time; give it as this octsim writes it."""
+    found = dataset.attrs.get("stage")
+    if not isinstance(found, str) or found != (stage or found):
+        if stage is None:
+            raise DatasetError(f"{path}: not a dataset of octsim; give one that is")
+        raise DatasetError(f"{path}: not octsim's dataset of the stage {stage}; {_remedy(path)}")
+    dataset = upgraded(dataset, path)
+    if config is None:
+        return dataset
+    differ = differing(found, config, json.loads(dataset.attrs["config"]))
+    if differ:
+        raise DatasetError(
+            f"{path}: made from another config (its {', '.join(differ)} differ); {_remedy(path)}"
+        )
+    return dataset
+
+
+def flags(
+    codes: type[IntEnum], values: NDArray[np.int64]
+) -> tuple[NDArray[np.int8], dict[str, Any]]:
+    """Give the values of an enumeration with the CF attributes that name them."""
+    members = list(codes)
+    return np.asarray(values, np.int8), {
+        "flag_values": np.array([m.value for m in members], np.int8),
+        "flag_meanings": " ".join(m.name.lower() for m in members),
+    }

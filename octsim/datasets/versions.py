@@ -1,0 +1,104 @@
+"""What a dataset's file looks like, by number: files of an older octsim are read or refused."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+from pydantic import ValidationError
+
+from octsim.base.errors import DatasetError
+from octsim.config.messages import explain
+from octsim.config.models import Config
+from octsim.config.overlays import merge
+
+SCHEMA = 1
+"""Of the files that this octsim writes; files of octsim 0.1.0 have no number, which counts as 0."""
+_GREW: Mapping[str, tuple[str, ...]] = {
+    # while files had no number; early ones lack what later stages read
+    "focus_scan": ("intensity_error", "accuracy_status"),
+    "focus_sweep": ("intensity_error", "accuracy_status"),
+    "focus_law": ("status",),
+    "detections": ("path_code", "rough_amplitude", "missing_field", "accuracy_status"),
+    "spectra": ("intensity_error", "accuracy_status"),
+}
+
+
+def recorded_config(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """Give the config that a dataset's attributes hold, as plain data, with every key of today.
+
+    Keys that the config had no name for yet are at their defaults, which do what was done then.
+
+    Raises
+    ------
+    ValueError
+        If there is none, or one that this octsim has no meaning for.
+    """
+    try:
+        recorded = json.loads(attributes["config"])
+        return Config.model_validate(merge(Config().to_dict(), recorded)).to_dict()
+    except ValidationError as error:
+        raise ValueError(f"its config: {explain(error.errors()[0])}") from None
+    except (KeyError, TypeError, AttributeError, ValueError, RecursionError):
+        raise ValueError("it has no config") from None
+
+
+def recorded_environment(attributes: Mapping[str, Any]) -> dict[str, str] | None:
+    """Give the versions that a dataset's attributes say it was computed with; None without any."""
+    try:
+        found = json.loads(attributes["environment"])
+    except (KeyError, TypeError, ValueError, RecursionError):
+        return None
+    if not isinstance(found, dict):
+        return None
+    return {printable(name): printable(version) for name, version in found.items()}
+
+
+def printable(text: object) -> str:
+    """Give what a file says as a part of a line, whatever it holds."""
+    return "".join(letter if letter.isprintable() else " " for letter in str(text))[:200]
+
+
+def upgraded(dataset: xr.Dataset, path: Path) -> xr.Dataset:
+    """Give an octsim dataset as this octsim writes it.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        As it stands in the file.
+    path : path
+        The file.
+
+    Raises
+    ------
+    DatasetError
+        If this octsim can't read it; with the version that can.
+    """
+    try:
+        number = int(dataset.attrs.get("schema_version", 0))
+    except (TypeError, ValueError, OverflowError):
+        number = SCHEMA + 1
+    by = printable(dataset.attrs.get("octsim_version", "of an unknown version"))
+    if number > SCHEMA:
+        raise DatasetError(
+            f"{path}: written by octsim {by}, as schema {number}; this octsim reads up to schema "
+            f"{SCHEMA}: read it with octsim {by} or later"
+        )
+    try:
+        config = recorded_config(dataset.attrs)
+    except ValueError as error:
+        raise _refused(path, by, str(error)) from None
+    if number == SCHEMA:
+        return dataset
+    missing = [n for n in _GREW.get(dataset.attrs["stage"], ()) if n not in dataset.variables]
+    if missing:
+        raise _refused(path, by, f"it lacks {', '.join(missing)}")
+    return dataset.assign_attrs(config=json.dumps(config), schema_version=SCHEMA)
+
+
+def _refused(path: Path, by: str, why: str) -> DatasetError:
+    return DatasetError(
+        f"{path}: written by octsim {by}, and this octsim can't read it ({why}); read it with "
+        f"octsim {by}, or move it away and run again to make {path.name} anew"
+    )

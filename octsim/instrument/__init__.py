@@ -1,0 +1,1 @@
+"""A config's instrument: points traced, or taken from where they are kept."""

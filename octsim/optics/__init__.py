@@ -1,0 +1,1 @@
+"""What light meets and how it is changed there: scene, formulas, beam, detector."""

@@ -1,0 +1,142 @@
+"""What the detector collects: which returning rays, with which weight and path."""
+
+import math
+from enum import IntEnum
+from typing import NamedTuple
+
+from numba.extending import register_jitable
+
+from octsim.config.models import Config
+from octsim.optics.beam import aperture_radius
+from octsim.optics.interface import Vector
+
+# A ray sent back to the rim itself (a focus on the glass does that) is within it, however the last
+# digit is rounded.
+RIM = 1 + 1e-12
+
+
+class Outcome(IntEnum):
+    """How a traced segment ends, if it does not split at a surface; or why it was not traced."""
+
+    DETECTED = 0
+    """Reached the detector."""
+    OFF_DETECTOR = 1
+    """Came back through the objective, but beside the detector's image."""
+    OFF_OBJECTIVE = 2
+    """Came back into the glass, but past the objective's rim."""
+    ESCAPED = 3
+    """Left the scene: no surface ahead, and not on its way down through the glass."""
+    SPENT = 4
+    """Met a surface once more than `max_intersections`."""
+    FAINT = 5
+    """Not traced: below `min_amplitude`."""
+    TOTALLY_REFLECTED = 6
+    """Not traced: the transmitted ray of a total reflection, which does not exist."""
+
+
+class Detector(NamedTuple):
+    """The objective as a receiver and the fibre's image in the focal plane; lengths in µm."""
+
+    objective_radius: float
+    focus_distance: float
+    radius: float
+    """R_det, of the fibre core's image at the focus."""
+    magnification: float
+    focal_length: float
+    """f = focus_distance · M / (M + 1)."""
+
+
+def detector_radius(config: Config) -> float:
+    """Radius R_det of the fibre core's image at the focus, core_diameter / (2 M), in µm."""
+    return config.detector.core_diameter / (2 * config.objective.magnification)
+
+
+def detector_of(config: Config) -> Detector:
+    """Make the detector that a config describes."""
+    objective = config.objective
+    magnification = objective.magnification
+    return Detector(
+        objective_radius=aperture_radius(objective, config.scene.refractive_index.glass),
+        focus_distance=objective.focus_distance,
+        radius=detector_radius(config),
+        magnification=magnification,
+        focal_length=objective.focus_distance * magnification / (magnification + 1),
+    )
+
+
+@register_jitable(forceinline=True)
+def arrival(height: float, position: Vector, direction: Vector) -> tuple[float, float]:
+    """Trace a ray to a horizontal plane, onwards or back.
+
+    Returns
+    -------
+    distance : float
+        Distance along the ray, µm; negative if the plane lies behind.
+    squared_radius : float
+        Squared distance from the optical axis there, µm².
+    """
+    distance = (height - position.z) / direction.z
+    x = position.x + distance * direction.x
+    y = position.y + distance * direction.y
+    return distance, x * x + y * y
+
+
+@register_jitable(forceinline=True)
+def fate(detector: Detector, at_focus: float, at_objective: float) -> int:
+    """Tell whether a ray is detected, from its squared radii (µm²) at the focus and the objective.
+
+    By the lens's rule 3 (thesis §4.4) a ray that passes the objective reaches the fibre at the
+    point whose image is where it would have left the focal plane.
+    """
+    if not at_objective <= (RIM * detector.objective_radius) ** 2:
+        return Outcome.OFF_OBJECTIVE
+    if not at_focus < detector.radius**2:
+        return Outcome.OFF_DETECTOR
+    return Outcome.DETECTED
+
+
+@register_jitable(forceinline=True)
+def falloff(squared_radius: float, detector_radius: float) -> float:
+    """Parabolic falloff of the detected amplitude, 1 − (ρ/R_det)² (thesis §4.4)."""
+    return 1 - squared_radius / (detector_radius * detector_radius)
+
+
+@register_jitable(forceinline=True)
+def lens_correction(squared_radius: float, magnification: float, focal_length: float) -> float:
+    r"""Optical path from the focal point to the fibre, beyond that on the axis, in µm.
+
+    .. math:: M (\sqrt{f^2 + \rho^2} - f) = M \rho^2 / (\sqrt{f^2 + \rho^2} + f)
+
+    (thesis §4.4), in the form that does not cancel.
+    """
+    reach = math.sqrt(focal_length * focal_length + squared_radius) + focal_length
+    return magnification * squared_radius / reach
+
+
+@register_jitable(forceinline=True)
+def collect(
+    detector: Detector, n_glass: float, to_focus: float, at_focus: float
+) -> tuple[float, float]:
+    """Weigh a detected ray, and give the optical path that it has still to go.
+
+    By the lens's rule 4 (thesis §4.4) that is the path to where it would have left the focal plane,
+    negative when that lies behind it, and the lens's correction.
+
+    Parameters
+    ----------
+    detector : Detector
+        The receiver.
+    n_glass : float
+        Refractive index below the scene.
+    to_focus, at_focus : float
+        Distance to the focal plane (µm) and squared radius there (µm²), from `arrival`.
+
+    Returns
+    -------
+    weight : float
+        Factor on the amplitude.
+    optical_path_length : float
+        What is added to the ray's path, µm.
+    """
+    correction = lens_correction(at_focus, detector.magnification, detector.focal_length)
+    return falloff(at_focus, detector.radius), n_glass * to_focus + correction

@@ -1,0 +1,1 @@
+"""Spectra to phases: transform, estimators, noise, measured data."""

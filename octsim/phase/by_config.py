@@ -1,0 +1,127 @@
+"""Phases of a run's spectra and of measured ones, by the estimator that the config names."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from octsim.base.errors import ConfigError
+from octsim.config.models import Config
+from octsim.config.processing import Processing
+from octsim.optics.band import wavenumbers
+from octsim.optics.two_beams import predicted_phase_slope
+from octsim.phase.estimators import estimate
+from octsim.phase.estimators.estimate import Array, Estimate
+from octsim.phase.estimators.likelihood import maximum_likelihood
+from octsim.phase.measured_spectra import read_spectra
+
+BEST = Processing.model_validate(
+    {"estimator": "sinusoid", "depth": "peak", "sinusoid": {"depth": "fitted", "weights": "shot"}}
+)
+"""What measured spectra are processed by, unless something else is asked for."""
+
+
+EstimatorOf = Callable[[Array, Array], Estimate]
+"""From spectra (D, K) and their diameters (D,), µm, to phases; each spectrum by itself."""
+
+
+def estimator_of(config: Config, foci: Array) -> EstimatorOf:
+    """Make a run's ``processing.estimator``, which works on any of the sweep's spectra.
+
+    Those that know a diameter and no phase give the depth of that diameter, and the phase that the
+    thesis's prediction has for it: the slope of that is predicted_phase_slope · ∂d̂/∂d. Of fft,
+    whose phases are its components', all is NaN, as it is without a focus.
+
+    Parameters
+    ----------
+    config : Config
+        The run, at one combination of its grid.
+    foci : ndarray
+        Foci of all of the sweep's diameters, µm; NaN where there is no law.
+    """
+    processing, k = config.processing, wavenumbers(config.spectrum)
+    n_neuron = config.scene.refractive_index.neuron
+    if processing.estimator == "fft" or np.isnan(foci).any():
+        return lambda _, diameter: Estimate(*np.full((2, diameter.size), np.nan))
+    if processing.estimator != "maximum_likelihood":
+        return lambda spectra, diameter: estimate(spectra, k, n_neuron * diameter, processing)
+    # here, as a run of any other estimator needs no tracing any more
+    from octsim.phase.modelled_spectra import model_of_sweep
+
+    model, predicted = model_of_sweep(config, foci), predicted_phase_slope(n_neuron, k[0], k[-1])
+
+    def likeliest(spectra: Array, _: Array) -> Estimate:
+        found = maximum_likelihood(spectra, model, processing.read_noise)
+        return Estimate(predicted * found, n_neuron * found)
+
+    return likeliest
+
+
+def ideal_phases(config: Config, spectra: Array, diameter: Array, wavenumber: Array) -> Array:
+    """Estimate the phases (D,) of ideal spectra cos(2ndk), (D, K).
+
+    They are those of 1 − cos(2ndk), half a turn away: of opposite reflections, from whose phase a
+    fringe's order is counted. Maximum likelihood, whose model they are not, has the prediction's.
+    """
+    n_neuron, processing = config.scene.refractive_index.neuron, config.processing
+    if processing.estimator == "maximum_likelihood":
+        return predicted_phase_slope(n_neuron, wavenumber[0], wavenumber[-1]) * diameter
+    return estimate(1 - spectra, wavenumber, n_neuron * diameter, processing).phase
+
+
+def phase_of(
+    source: str | Path | xr.Dataset,
+    processing: Processing | None = None,
+    nominal_depth: float | None = None,
+) -> Estimate:
+    """Estimate the phases of measured spectra.
+
+    Parameters
+    ----------
+    source : path or Dataset
+        Spectra as `octsim.phase.measured_spectra.read_spectra` takes them.
+    processing : Processing, optional
+        Which estimator, with which options; else the best phase of `snakemake estimators`, a
+        sinusoid whose depth is fitted from the highest peak on.
+    nominal_depth : float, optional
+        Optical depth n_neuron · diameter (µm) of all spectra, for ``depth: nominal``.
+
+    Returns
+    -------
+    Estimate
+        Phase at the middle of the band (rad, wrapped) and optical depth (µm) of each spectrum.
+
+    Raises
+    ------
+    ConfigError
+        If the processing needs a nominal depth that is not given, or modelled spectra.
+    FileError, DatasetError
+        If the spectra can't be read or used.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> k = np.linspace(7, 9.7, 500)
+    >>> spectra = xr.Dataset(
+    ...     {"intensity": ("wavenumber", 2 + np.cos(2 * 1.9 * (k - k.mean()) + 0.3))},
+    ...     {"wavenumber": ("wavenumber", k, {"units": "um-1"})},
+    ... )
+    >>> phase_of(spectra).phase.round(6).tolist()
+    [0.3]
+    """
+    processing = BEST if processing is None else processing
+    if processing.estimator == "maximum_likelihood":
+        raise ConfigError(
+            "processing.estimator: 'maximum_likelihood' given, which compares with modelled "
+            "spectra; use octsim.phase.modelled_spectra.model_of_sweep and "
+            "octsim.phase.estimators.likelihood.maximum_likelihood"
+        )
+    if processing.estimator != "fft" and processing.depth == "nominal" and nominal_depth is None:
+        raise ConfigError(
+            "processing.depth: 'nominal' given, but measured spectra have no diameter; give "
+            "'peak' or a length, or pass nominal_depth"
+        )
+    intensity, k = read_spectra(source)
+    nominal = np.full(intensity.shape[0], np.nan if nominal_depth is None else nominal_depth)
+    return estimate(intensity, k, nominal, processing)

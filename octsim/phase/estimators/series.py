@@ -1,0 +1,39 @@
+"""Phases of a series: spectra of one neuron, by an estimator whose settings are held."""
+
+import numpy as np
+
+from octsim.config.processing import Processing
+from octsim.phase.estimators import estimate
+from octsim.phase.estimators.estimate import Array
+from octsim.phase.transform import fourier_components
+
+
+def series_phases(
+    intensity: Array, wavenumber: Array, depth: float, processing: Processing
+) -> Array:
+    """Estimate the phases of a series, which is of one optical depth as far as is known.
+
+    Of fft it is that of one component, the strongest of all spectra together, as phases of two
+    can't be compared.
+
+    Parameters
+    ----------
+    intensity : ndarray, shape (T, K)
+        Spectra.
+    wavenumber : ndarray, shape (K,)
+        Wavenumbers, 1/µm.
+    depth : float
+        Nominal optical depth n_neuron · diameter, µm.
+    processing : Processing
+        Which estimator, with which options.
+
+    Returns
+    -------
+    ndarray, shape (T,)
+        Phases, rad, wrapped or not: of fft at the first wavenumber, of others at the middle one.
+    """
+    if processing.estimator == "fft":
+        components = fourier_components(intensity, processing)
+        strongest = 1 + int(np.abs(components[:, 1:]).sum(axis=0).argmax())
+        return np.angle(components[:, strongest])
+    return estimate(intensity, wavenumber, np.full(len(intensity), depth), processing).phase

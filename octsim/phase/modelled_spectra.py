@@ -1,0 +1,42 @@
+"""Modelled spectra that maximum likelihood compares measured ones with."""
+
+import numpy as np
+
+from octsim.base.threads import each
+from octsim.config.models import Config
+from octsim.instrument.instrument import spectrometer
+from octsim.phase.estimators.estimate import Array
+from octsim.phase.estimators.likelihood import Model
+from octsim.studies.tradeoff.settings import by_accuracy
+
+MODEL_ACCURACY = 1e-6
+"""Of the spectra that maximum likelihood compares with."""
+_STEP = 0.007  # µm; a spline over them is off by some 1e-6 of the largest intensity
+_BEYOND = 0.1  # µm, that a diameter may seem to be outside the sweep
+
+
+def modelled(config: Config, diameters: Array, foci: Array, threads: int = 1) -> Model:
+    """Trace the spectra of a config's scene by light paths, for diameters and foci (M,) in µm."""
+    exact = by_accuracy(config, MODEL_ACCURACY)
+    look = spectrometer(exact)
+    points = zip(diameters.tolist(), foci.tolist(), strict=True)
+    spectra = list(each(lambda point: look(*point)[0], points, threads))
+    return Model(diameters, np.stack(spectra))
+
+
+def model_of_sweep(config: Config, foci: Array, threads: int = 1) -> Model:
+    """Trace a model that reaches beyond a sweep whose foci (D,), µm, are given.
+
+    Its steps are fine enough for a cubic spline, whatever the sweep's; foci go on in a line.
+    """
+    diameters = config.sweep.diameters.values()
+    step = min(diameters[1] - diameters[0], _STEP)
+    first = max(diameters[0] - _BEYOND, diameters[0] / 2)
+    num = int(np.ceil((diameters[-1] + _BEYOND - first) / step)) + 1
+    at = np.linspace(first, diameters[-1] + _BEYOND, num)
+    ends = foci[[0, -1]] + [
+        (at[0] - diameters[0]) * (foci[1] - foci[0]) / (diameters[1] - diameters[0]),
+        (at[-1] - diameters[-1]) * (foci[-1] - foci[-2]) / (diameters[-1] - diameters[-2]),
+    ]
+    known = np.concatenate([at[:1], diameters, at[-1:]])
+    return modelled(config, at, np.interp(at, known, np.array([ends[0], *foci, ends[1]])), threads)

@@ -1,0 +1,135 @@
+"""What the integration of a point works with: its task, room for tiles, and for weighted rays."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import register_jitable
+from numpy.typing import NDArray
+
+from octsim.optics.beam import Beam
+from octsim.optics.detector import Detector
+from octsim.schemes.paths.aperture_tiles import Tile
+from octsim.schemes.paths.chebyshev import HIGHEST
+from octsim.schemes.paths.line_crossings import Line, Map, room_for_line
+from octsim.schemes.paths.patch_by_fit import Search, room_for_search
+from octsim.schemes.paths.patch_integrals import Rules
+from octsim.tracing.blocks import LANES
+from octsim.tracing.faces import Faces
+from octsim.tracing.follow import LONGEST, Bundle, Workspace, room_for_bundle, room_for_following
+
+MOST_TILES = 4096
+"""Tiles of one path that can wait."""
+
+
+class Task(NamedTuple):
+    """What stays the same for all tiles of a point."""
+
+    faces: Faces
+    symmetric: bool
+    detector: Detector
+    focus: float
+    k_mid: float
+    k_max: float
+    nodes_s: NDArray[np.float64]
+    """Of each kind and number along s, and their transforms, from `chebyshev.tables`."""
+    transforms_s: NDArray[np.float64]
+    nodes_v: NDArray[np.float64]
+    """The same along v."""
+    transforms_v: NDArray[np.float64]
+    rules: Rules
+
+
+class Survey(NamedTuple):
+    """Rays over the whole aperture that returned, the paths' one after the other."""
+
+    root: Tile
+    orders: tuple[int, int]
+    """Numbers of nodes along s and v."""
+    code: NDArray[np.int64]
+    """Each path's code, (P,)."""
+    begin: NDArray[np.int64]
+    """Where each path's rays begin, (P,)."""
+    end: NDArray[np.int64]
+    """Where they end, (P,)."""
+    beyond: float
+    """How far quantities may go on beyond known corners; see `patch_by_corners`."""
+    bound: NDArray[np.float64]
+    """An estimate of each path's field, (P,)."""
+    strongest: NDArray[np.float64]
+    """Largest amplitude of each path's rays, (P,)."""
+    ray: NDArray[np.int64]
+    amplitude: NDArray[np.float64]
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    vx: NDArray[np.float64]
+    vy: NDArray[np.float64]
+
+
+class Agenda(NamedTuple):
+    """Tiles that wait, the next one last."""
+
+    tiles: NDArray[np.float64]
+    orders: NDArray[np.int64]
+    """Number of nodes along s and v."""
+    kinds: NDArray[np.int64]
+    shares: NDArray[np.float64]
+    """Of the error that is allowed."""
+    bounds: NDArray[np.float64]
+    """Estimated fields."""
+    offs: NDArray[np.float64]
+    """Errors with fewer nodes; infinite if there were none."""
+
+
+class Room(NamedTuple):
+    """Room to work on a tile in."""
+
+    beam: Beam
+    bundle: Bundle
+    rays: Workspace
+    line: Line
+    search: Search
+    returns: Map
+    exact: NDArray[np.float64]
+    rough: NDArray[np.float64]
+    values: NDArray[np.float64]
+    others: NDArray[np.float64]
+    between: NDArray[np.float64]
+    weight: NDArray[np.float64]
+    rough_weight: NDArray[np.float64]
+    face: NDArray[np.int64]
+    through: NDArray[np.bool_]
+    agenda: Agenda
+
+
+class Found(NamedTuple):
+    """Room for weighted rays."""
+
+    path: NDArray[np.int64]
+    amplitude: NDArray[np.float64]
+    rough: NDArray[np.float64]
+    optical_path_length: NDArray[np.float64]
+
+
+@register_jitable
+def room_for_point() -> Room:
+    """Make the room that a point's tiles are worked on in."""
+    square = (HIGHEST, HIGHEST)
+    return Room(
+        Beam(np.empty(LANES), np.empty(LANES), np.empty(LANES), np.ones(LANES), np.arange(LANES)),
+        room_for_bundle(), room_for_following(), room_for_line(), room_for_search(),
+        Map(np.empty(square), np.empty(square), np.empty(square), np.empty(square)),
+        np.empty(square), np.empty(square), np.empty(square), np.empty(square), np.empty(square),
+        np.empty(square), np.empty(square),
+        np.empty(LONGEST, np.int64), np.empty(LONGEST, np.bool_),
+        Agenda(
+            np.empty((MOST_TILES, 4)), np.empty((MOST_TILES, 2), np.int64),
+            np.empty(MOST_TILES, np.int64), np.empty(MOST_TILES), np.empty(MOST_TILES),
+            np.empty(MOST_TILES),
+        ),
+    )  # fmt: skip
+
+
+@register_jitable
+def room_for_nodes(size: int) -> Found:
+    """Make room for weighted rays; it grows as they come."""
+    return Found(np.empty(size, np.int64), np.empty(size), np.empty(size), np.empty(size))

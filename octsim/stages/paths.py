@@ -1,0 +1,157 @@
+"""What each light path has in a spectrum: its amplitude, phase, optical path and share."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from octsim.base.compiled import compiled
+from octsim.config.models import Config
+from octsim.datasets.layout import Coordinate, Layout
+from octsim.datasets.reader import Stored
+from octsim.datasets.stage import Part, Stage, Stream
+from octsim.optics.band import wavenumbers
+from octsim.schemes.light import Light
+from octsim.stages.cost_estimate import point_cost, points_per_block
+from octsim.stages.sweep import stored_light
+from octsim.tracing.follow import path_name
+
+_SAMPLES = 101  # of the band, for means over it
+
+
+@compiled(fastmath={"contract"})
+def _path_fields(
+    row: NDArray[np.int64],
+    amplitude: NDArray[np.float64],
+    optical_path_length: NDArray[np.float64],
+    paths: int,
+    first: float,
+    step: float,
+    num: int,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Sum the rays of each path at evenly spaced wavenumbers, (paths, num), by a recurrence."""
+    real, imaginary = np.zeros((paths, num)), np.zeros((paths, num))
+    for j in range(row.size):
+        reach, p = optical_path_length[j], row[j]
+        cos, sin = amplitude[j] * np.cos(first * reach), amplitude[j] * np.sin(first * reach)
+        turn_cos, turn_sin = np.cos(step * reach), np.sin(step * reach)
+        for k in range(num):
+            real[p, k] += cos
+            imaginary[p, k] += sin
+            cos, sin = cos * turn_cos - sin * turn_sin, cos * turn_sin + sin * turn_cos
+    return real, imaginary
+
+
+def _mean_paths(light: Light, row: NDArray[np.int64], paths: int) -> NDArray[np.float64]:
+    """Mean optical path of each path's rays, weighted with their amplitudes, (P,); NaN if none."""
+    size = np.abs(light.amplitude)
+    total = np.bincount(row, size * light.optical_path_length, paths)
+    weight = np.bincount(row, size, paths)
+    mean: NDArray[np.float64] = np.full(paths, np.nan)
+    np.divide(total, weight, out=mean, where=weight > 0)
+    return mean
+
+
+def _strongest_first(layout: Layout, stored: Stored) -> NDArray[np.int64]:
+    """Find every path of a sweep, that of the strongest field at the middle of the band first."""
+    strength: dict[int, float] = {}
+    for at, span in layout.blocks(_block_points):
+        part = stored.part(at, span)
+        codes, row = np.unique(part["path_code"].values, return_inverse=True)
+        if codes.size == 0:
+            continue
+        k = wavenumbers(at.config.spectrum)
+        point = np.repeat(np.arange(part.sizes["diameter"]), part["rays_detected"].values)
+        phase = (k[0] + k[-1]) / 2 * part["optical_path_length"].values
+        field = [
+            np.bincount(
+                point * codes.size + row, part["amplitude"].values * wave,
+                part.sizes["diameter"] * codes.size,
+            )
+            for wave in (np.cos(phase), np.sin(phase))
+        ]  # fmt: skip
+        size = np.hypot(*field).reshape(-1, codes.size)
+        # one after the other, so that blocks of other sizes give the same bits
+        for code, sizes in zip(codes.tolist(), size.T.tolist(), strict=True):
+            for one in sizes:
+                strength[code] = strength.get(code, 0.0) + one
+    return np.array(sorted(strength, key=lambda code: (-strength[code], code)), np.int64)
+
+
+def _block_points(config: Config) -> int:
+    return points_per_block(point_cost(config).size + 1000)
+
+
+@Stage
+def light_paths(config: Config, detected: xr.Dataset) -> Stream:
+    r"""Tell what each light path has in the spectra of a sweep.
+
+    A path's share of the intensity is
+
+    .. math:: \int \mathrm{Re}(E_p^* E)\, dk \Big/ \int |E|^2\, dk, \quad E = \sum_p E_p
+
+    over the band: shares sum to one, and that of a path which takes away is negative.
+
+    Returns
+    -------
+    Dataset
+        field_amplitude and field_phase, at the middle of the band, mean_optical_path_length, share
+        and path_rays (path, diameter); path_code(path). The strongest path is first. A path that
+        does not reach the detector at a diameter has no rays there, and its phase and optical path
+        are NaN.
+    """
+
+    def swept(config: Config) -> dict[str, Coordinate]:
+        return {"diameter": ("diameter", config.sweep.diameters.values())}
+
+    title = "What each light path has in the spectra"
+    unnamed = Layout("paths", config, title, __name__, swept, "diameter")
+    stored = Stored(detected, "detections", config, unnamed)
+    codes = _strongest_first(unnamed, stored)
+    named: dict[str, Coordinate] = {
+        "path": ("path", np.array([path_name(code) for code in codes.tolist()], str)),
+        "path_code": ("path", codes),
+    }
+    layout = Layout(
+        "paths", config, title, __name__, lambda config: named | swept(config), "diameter"
+    )
+    return Stream(layout, _shared(layout, stored, codes))
+
+
+def _shared(layout: Layout, stored: Stored, codes: NDArray[np.int64]) -> Iterator[Part]:
+    order = np.argsort(codes)
+    for at, span in layout.blocks(_block_points):
+        k = wavenumbers(at.config.spectrum)
+        step = (k[-1] - k[0]) / (_SAMPLES - 1)
+        found = []
+        for light in stored_light(stored.part(at, span)):
+            row = order[np.searchsorted(codes, light.path, sorter=order)]
+            found.append(_shares(light, row, codes.size, k[0], step))
+        variables = {
+            name: (("path", "diameter"), np.stack([one[name] for one in found], axis=1))
+            for name in found[0]
+        }
+        yield Part(at, span.start, len(found), variables)
+
+
+def _shares(
+    light: Light, row: NDArray[np.int64], paths: int, first: float, step: float
+) -> dict[str, NDArray[Any]]:
+    """Tell what each path has in one spectrum; `row` is the path's number, of each ray."""
+    real, imaginary = _path_fields(
+        row, light.amplitude, light.optical_path_length, paths, first, step, _SAMPLES
+    )
+    fields = real + 1j * imaginary
+    whole = fields.sum(axis=0)
+    intensity = float((np.abs(whole) ** 2).sum())
+    taken = (fields.conj() * whole).real.sum(axis=1)
+    middle, rays = fields[:, _SAMPLES // 2], np.bincount(row, minlength=paths)
+    return {
+        "field_amplitude": np.abs(middle),
+        "field_phase": np.where(rays > 0, np.angle(middle), np.nan),
+        "mean_optical_path_length": _mean_paths(light, row, paths),
+        "share": taken / intensity if intensity > 0 else np.zeros(paths),
+        "path_rays": rays,
+    }

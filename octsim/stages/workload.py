@@ -1,0 +1,53 @@
+"""What the stages that trace have to do, and over how many jobs they are scattered."""
+
+import math
+from typing import NamedTuple
+
+from octsim.config.grid import combinations
+from octsim.config.models import Config
+from octsim.datasets.catalog import keys_behind
+from octsim.stages.cost_estimate import point_cost, points_per_block
+
+SCATTERED = ("focus_scan", "focus_sweep", "detections")
+"""Stages that trace, and so may take long."""
+
+
+class Work(NamedTuple):
+    """What a stage has to do at a plain config."""
+
+    points: int
+    """Points along the dimension that its blocks are cut from."""
+    seconds: float
+    """Processor time of one of them."""
+    together: int
+    """How many are in a block."""
+
+
+def work_of(stage: str, config: Config) -> Work:
+    """Give what a stage that traces has to do at a plain config."""
+    size, seconds = point_cost(config)
+    count, each = {
+        "focus_scan": (config.focus_scan.focus.num, 1),
+        # a diameter's foci are one row of the dataset
+        "focus_sweep": (config.focus_law.diameters.num, config.focus_law.fraction.num),
+        "detections": (config.sweep.diameters.num, 1),
+    }[stage]
+    return Work(count, each * seconds, points_per_block(each * size, each * seconds))
+
+
+def shares_of(config: Config) -> dict[str, int]:
+    """Give how many jobs each stage that traces is scattered over.
+
+    They are of ``scatter.minutes`` of processor time each, or of one block where that takes longer,
+    by rates that are the same everywhere: where a run is made does not change its jobs.
+    """
+    return {stage: _shares(stage, config) for stage in SCATTERED}
+
+
+def _shares(stage: str, config: Config) -> int:
+    seconds, blocks = 0.0, 0
+    for at in combinations(config, *keys_behind(stage, config)):
+        work = work_of(stage, at.config)
+        seconds += work.points * work.seconds
+        blocks += math.ceil(work.points / work.together)
+    return max(1, min(round(seconds / (60 * config.scatter.minutes)), blocks))

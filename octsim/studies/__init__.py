@@ -1,0 +1,1 @@
+"""Datasets beside a run: what accuracy costs, what the slope is made of, the calibration."""

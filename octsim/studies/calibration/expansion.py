@@ -1,0 +1,202 @@
+"""From a measured phase to nanometres (`snakemake expansion`)."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import CubicSpline
+
+from octsim.base.errors import ConfigError, DatasetError, OctsimError
+from octsim.config.models import Config
+from octsim.datasets.files import make
+from octsim.phase.measured_series import Series, change_from_rest, read_series
+
+Array = NDArray[np.float64]
+LARGEST = 20.0
+"""Change of the diameter, nm, up to which a slope and its curvature serve."""
+
+
+class Sensitivity(NamedTuple):
+    """A calibration at one diameter."""
+
+    slope: float
+    """At a fixed focus and gap, mrad/nm."""
+    standard_error: float
+    """Of the slope, systematic, mrad/nm."""
+    curvature: float
+    """Change of the slope with the diameter, mrad/nm²."""
+
+
+class Expansion(NamedTuple):
+    """A change of the diameter with its standard errors, nm, each of the phase's shape."""
+
+    expansion: Array
+    statistical_error: Array
+    """By the error of the phase."""
+    systematic_error: Array
+    """By the error of the slope: the same fraction of every expansion."""
+
+    @property
+    def standard_error(self) -> Array:
+        """Both together, nm."""
+        both: Array = np.hypot(self.statistical_error, self.systematic_error)
+        return both
+
+
+def sensitivity_at(diameter: float, calibration: xr.Dataset) -> Sensitivity:
+    """Interpolate a calibration at a diameter (µm), by cubic splines.
+
+    Raises
+    ------
+    OctsimError
+        If the diameter is outside the calibration's.
+    """
+    known = calibration["diameter"].values
+    if not known[0] <= diameter <= known[-1]:
+        raise OctsimError(
+            f"diameter: {diameter:g} um given, outside the calibration's {known[0]:g} to "
+            f"{known[-1]:g} um; widen calibration.diameters and run the stage calibration again"
+        )
+    names = ("", "_standard_error")
+    columns = [calibration[f"fixed_focus_phase_slope{name}"].values for name in names]
+    columns.append(calibration["phase_curvature"].values)
+    return Sensitivity(*(float(CubicSpline(known, column)(diameter)) for column in columns))
+
+
+def expansion(
+    phase: ArrayLike, diameter: float, calibration: xr.Dataset, phase_error: ArrayLike = 0.0
+) -> Expansion:
+    r"""Turn changes of the phase into changes of the diameter.
+
+    The phase of a neuron that swells by δ at a fixed focus moves by
+
+    .. math:: \varphi = s \delta + c \delta^2 / 2,
+
+    which is solved for δ.
+
+    Parameters
+    ----------
+    phase : array_like
+        Changes of the phase from rest, rad, unwrapped; NaN gives NaN.
+    diameter : float
+        Of the neuron at rest, µm.
+    calibration : Dataset
+        Of the stage calibration, made with the estimator that the phases are from.
+    phase_error : array_like
+        One standard deviation of each change, rad.
+
+    Returns
+    -------
+    Expansion
+        In nm, of the phase's shape.
+
+    Raises
+    ------
+    OctsimError
+        If the diameter is outside the calibration's, or a change is too large for it.
+
+    Examples
+    --------
+    A phase that moved by 11 mrad: ``octsim.expansion(0.011, 1.4, calibration)``.
+    """
+    at = sensitivity_at(diameter, calibration)
+    moved = 1e3 * np.asarray(phase, float)  # mrad
+    # the slope where the phase ends; without a root the neuron would have to shrink beyond the turn
+    end = np.sqrt(np.maximum(at.slope**2 + 2 * at.curvature * moved, 0.0))
+    change = 2 * moved / (at.slope + end)
+    if (np.abs(change) > LARGEST).any():
+        largest = float(np.nanmax(np.abs(moved)))
+        raise OctsimError(
+            f"phase: a change of {largest:.4g} mrad given, more than the {LARGEST:g} nm that the "
+            f"calibration holds for at {diameter:g} um; take the diameter and the rest nearer to it"
+        )
+    statistical = np.abs(1e3 * np.asarray(phase_error, float) / end)
+    systematic = np.abs(change) * at.standard_error / end
+    return Expansion(change, np.broadcast_to(statistical, change.shape), systematic)
+
+
+def series_of(config: Config) -> Series:
+    """Read the series that a config names.
+
+    Raises
+    ------
+    OctsimError
+        If it names none, or one that can't be read.
+    """
+    if config.expansion.series is None:
+        raise ConfigError(
+            "expansion.series: not given; name the CSV or netCDF file that holds time and phase"
+        )
+    return read_series(config.expansion.series)
+
+
+def series_expansion(config: Config, series: Series, calibration: xr.Dataset) -> xr.Dataset:
+    """Turn a series of phases into expansions.
+
+    Returns
+    -------
+    Dataset
+        phase_change, expansion, statistical_error and systematic_error (time); the diameter, the
+        slope with its systematic error and the number of missing samples; the series itself, as it
+        was measured: measured_phase and, where it is known, measured_phase_error (time).
+
+    Raises
+    ------
+    OctsimError
+        If the series or the diameter does not serve; see `change_from_rest` and `expansion`.
+    """
+    settings = config.expansion
+    change = change_from_rest(series, settings.rest)
+    found = expansion(change.phase, settings.diameter, calibration, change.error)
+    at = sensitivity_at(settings.diameter, calibration)
+    missing = np.where(np.isfinite(change.phase), 0.0, np.nan)
+    measured = {"measured_phase": ("time", series.phase)}
+    if series.phase_error is not None:
+        measured["measured_phase_error"] = ("time", series.phase_error)
+    return make(
+        "expansion",
+        config,
+        "Change of the diameter over time, from a measured phase",
+        {
+            "phase_change": ("time", change.phase),
+            "expansion": ("time", found.expansion),
+            "statistical_error": ("time", found.statistical_error),
+            "systematic_error": ("time", found.systematic_error + missing),
+            "diameter": settings.diameter,
+            "fixed_focus_phase_slope": at.slope,
+            "fixed_focus_phase_slope_standard_error": at.standard_error,
+            "samples_missing": int(np.isnan(change.phase).sum()),
+            **measured,
+        },
+        {"time": series.time},
+        __name__,
+    )
+
+
+def series_in(found: xr.Dataset) -> xr.Dataset:
+    """Give the measured series that an expansion records, as `read_series` reads it from netCDF.
+
+    Raises
+    ------
+    DatasetError
+        If it records none, as those of octsim 0.1.0.
+    """
+    names = {f"measured_{name}": name for name in ("phase", "phase_error")}
+    held = {name: plain for name, plain in names.items() if name in found}
+    if "phase" not in held.values():
+        raise DatasetError("its measured series is not recorded in it")
+    return found[list(held)].rename(held).drop_attrs(deep=False)
+
+
+def summary(found: xr.Dataset) -> str:
+    """Say in one line what a series comes to."""
+    sizes = np.abs(found["expansion"].values)
+    at = int(np.nanargmax(sizes))
+    one = found.isel(time=at)
+    return (
+        f"largest change {float(one['expansion']):+.4f} nm at {float(one['time']):.6g} s, ± "
+        f"{float(one['statistical_error']):.4f} (statistical) ± "
+        f"{float(one['systematic_error']):.4f} (systematic); {int(found['samples_missing'])} of "
+        f"{sizes.size} samples missing"
+    )

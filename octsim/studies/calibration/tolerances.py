@@ -1,0 +1,107 @@
+"""What of the instrument and the neuron may differ from what is believed, and how it is moved."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from octsim.config.models import Config
+from octsim.config.units import format_length
+from octsim.datasets.catalog import part_of
+from octsim.optics.detector import detector_radius
+from octsim.phase.derivatives import Array, stencil
+from octsim.studies.tradeoff.settings import changed
+
+
+class Place(NamedTuple):
+    """An instrument, and where its neuron and focus are besides where they were."""
+
+    config: Config
+    diameter: float
+    """Added to the diameter, µm."""
+    focus: float
+    """Added to the height of the focus, µm."""
+
+
+class Parameter(NamedTuple):
+    """What is moved."""
+
+    step: float
+    """Largest change, for a derivative; µm where it is a length."""
+    key: str = ""
+    """Its key of the config; none for what is no part of one."""
+    least: float = -np.inf
+    most: float = np.inf
+
+
+_LEAST_NA = 1e-3
+PARAMETERS: Mapping[str, Parameter] = {
+    # of the neuron at rest: the focus is looked for by the greatest intensity, so it goes with it
+    "diameter": Parameter(2e-3),
+    "gap": Parameter(1e-3, "scene.gap", least=0.0),
+    "glass": Parameter(1e-3, "scene.refractive_index.glass", least=1.0, most=10.0),
+    "water": Parameter(1e-3, "scene.refractive_index.water", least=1.0, most=10.0),
+    "neuron": Parameter(1e-3, "scene.refractive_index.neuron", least=1.0, most=10.0),
+    "focus": Parameter(4e-3),
+    "numerical_aperture": Parameter(3e-3, "objective.numerical_aperture", least=_LEAST_NA),
+    "detector_radius": Parameter(1e-3, "detector.core_diameter"),
+    "wavelength_min": Parameter(2e-4, "spectrum.wavelength.min"),
+    "wavelength_max": Parameter(2e-4, "spectrum.wavelength.max"),
+}
+"""Each by the name of its tolerance."""
+
+
+def value_of(config: Config, name: str) -> float:
+    """Give what a parameter is in a config; 0 for what is no part of one."""
+    if name == "detector_radius":
+        return detector_radius(config)
+    part: Any = config
+    for key in PARAMETERS[name].key.split(".") if PARAMETERS[name].key else ():
+        part = getattr(part, key)
+    return 0.0 if part is config else float(part)
+
+
+def offsets_of(config: Config, name: str) -> Array:
+    """Give five changes of a parameter, (5,), that leave it possible."""
+    return stencil(value_of(config, name), PARAMETERS[name].step, *limits(config, name))
+
+
+def limits(config: Config, name: str) -> tuple[float, float]:
+    """Give the least and the most that a parameter may be, with the others within theirs."""
+    least, most = PARAMETERS[name].least, PARAMETERS[name].most
+    glass, aperture = config.scene.refractive_index.glass, config.objective.numerical_aperture
+    if name == "glass":
+        least = max(least, (glass + aperture) / 2)
+    if name == "numerical_aperture":
+        most = aperture + 0.49 * (glass - aperture)
+    return least, most
+
+
+def moved(config: Config, changes: Mapping[str, float], law_slope: float) -> Place:
+    """Move parameters and hold the others; the focus follows only the diameter, by the law."""
+    diameter = changes.get("diameter", 0.0)
+    focus = law_slope * diameter + changes.get("focus", 0.0)
+    data, overlay = config.to_dict(), {}
+    for name, by in changes.items():
+        key, least = PARAMETERS[name].key, PARAMETERS[name].least
+        value = max(least, value_of(config, name) + by)  # whatever the last digit is rounded to
+        if name == "detector_radius":
+            value *= 2 * config.objective.magnification
+        if key:
+            overlay[key] = format_length(value) if isinstance(part_of(data, key), str) else value
+    return Place(changed(config, *map(_nested, overlay.items())), diameter, focus)
+
+
+def drawn(config: Config, generator: np.random.Generator, law_slope: float) -> Place:
+    """Draw an instrument and a neuron from the tolerances: normal, within what is possible."""
+    changes = {}
+    for name in PARAMETERS:
+        by = generator.normal(0.0, getattr(config.calibration.tolerances, name))
+        at, (least, most) = value_of(config, name), limits(config, name)
+        changes[name] = min(max(by, least - at), most - at)
+    return moved(config, changes, law_slope)
+
+
+def _nested(item: tuple[str, object]) -> dict[str, Any]:
+    first, *rest = item[0].split(".")
+    return {first: _nested((".".join(rest), item[1])) if rest else item[1]}

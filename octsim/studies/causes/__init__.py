@@ -1,0 +1,1 @@
+"""What makes the phase slope scatter, and spike."""

@@ -1,0 +1,99 @@
+"""The estimators that are compared, and a sweep's phase slope by each."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from octsim.config.models import Config
+from octsim.config.processing import Processing
+from octsim.optics.two_beams import predicted_phase_slope
+from octsim.phase.estimators import estimate
+from octsim.phase.estimators.estimate import Array
+from octsim.phase.estimators.likelihood import Model, maximum_likelihood
+from octsim.phase.estimators.series import series_phases
+from octsim.phase.transform import fourier_components
+from octsim.stages.phase_slope import phase_slopes, slope_of
+
+LIKELIHOOD = "maximum_likelihood"
+COMMON = "sinusoid_common_envelope"
+"""For a series at one diameter only, so not of a sweep."""
+THESIS = "fft"
+_SHOT = {"weights": "shot"}
+_PLAIN = {"offset_degree": 0, "amplitude_degree": 0}
+
+CONTENDERS: Mapping[str, Mapping[str, Any]] = {
+    THESIS: {},
+    "fft_mean": {"centre": "mean"},
+    "fft_weighted": {"centre": "weighted"},
+    "fft_polynomial": {"centre": "polynomial"},
+    "zero_padded": {"estimator": "zero_padded", "centre": "weighted"},
+    "hilbert": {"estimator": "hilbert"},
+    "fringe": {"estimator": "fringe"},
+    "esprit": {"estimator": "esprit"},
+    "sinusoid_plain": {"estimator": "sinusoid", "sinusoid": _PLAIN},
+    "sinusoid_equal_weights": {"estimator": "sinusoid"},
+    "sinusoid": {"estimator": "sinusoid", "sinusoid": _SHOT},
+    "sinusoid_fitted_depth": {"estimator": "sinusoid", "sinusoid": {"depth": "fitted"} | _SHOT},
+    COMMON: {"estimator": "sinusoid", "sinusoid": {"envelope": "common"} | _SHOT},
+    LIKELIHOOD: {"estimator": "maximum_likelihood"},
+}
+"""Name of each, and how its processing differs from the thesis's."""
+
+
+class Band(NamedTuple):
+    """What estimators need to know of a scene's spectra."""
+
+    n_neuron: float
+    """Refractive index of the neuron."""
+    wavenumber: Array
+    """Wavenumbers, (K,), 1/µm."""
+
+    @property
+    def predicted(self) -> float:
+        """Predicted phase slope, mrad/nm."""
+        return predicted_phase_slope(self.n_neuron, self.wavenumber[0], self.wavenumber[-1])
+
+
+def contenders(config: Config) -> dict[str, Processing]:
+    """Give the processing of each estimator that is compared, the run's own last if it is other."""
+    compared = {
+        name: Processing.model_validate(differing) for name, differing in CONTENDERS.items()
+    }
+    if config.processing not in compared.values():
+        compared["run"] = config.processing
+    return compared
+
+
+def phases(
+    processing: Processing, band: Band, diameter: Array, intensity: Array, model: Model
+) -> Array:
+    """Estimate the phases (D,), rad, of spectra (D, K) at nominal diameters (D,), µm.
+
+    Of maximum likelihood, which has none, the prediction's for the diameter that it finds.
+    """
+    if processing.estimator == LIKELIHOOD:
+        return band.predicted * maximum_likelihood(intensity, model, processing.read_noise)
+    return estimate(intensity, band.wavenumber, band.n_neuron * diameter, processing).phase
+
+
+def of_series(
+    processing: Processing, band: Band, diameter: float, intensity: Array, model: Model
+) -> Array:
+    """Estimate the phases (T,), rad, of a series of spectra (T, K) at one nominal diameter, µm."""
+    if processing.estimator == LIKELIHOOD:
+        return band.predicted * maximum_likelihood(intensity, model, processing.read_noise)
+    return series_phases(intensity, band.wavenumber, band.n_neuron * diameter, processing)
+
+
+def slopes(
+    processing: Processing, band: Band, diameter: Array, intensity: Array, model: Model
+) -> Array:
+    """Give the phase slope (D,), mrad/nm, of a sweep's spectra (D, K).
+
+    Of fft it is that of each spectrum's strongest component, as in the stage phase_slope.
+    """
+    if processing.estimator == THESIS:
+        components = fourier_components(intensity, processing)
+        return phase_slopes(diameter, np.abs(components), np.angle(components)).strongest
+    return slope_of(diameter, phases(processing, band, diameter, intensity, model))

@@ -1,0 +1,68 @@
+"""What a wrong scene does to a diameter: spectra of one, read with another one's calibration."""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from octsim.config.models import Config
+from octsim.config.processing import Processing
+from octsim.config.units import format_length
+from octsim.phase.estimators.estimate import Array
+from octsim.phase.estimators.likelihood import Model, maximum_likelihood
+from octsim.phase.modelled_spectra import modelled
+from octsim.studies.estimators.contenders import Band, slopes
+from octsim.studies.tradeoff.settings import changed
+
+GAP, INDEX, FOCUS = 0.015, 0.01, 0.1
+"""How far another scene's gap (µm), neuron's index and focus (µm) are from the model's."""
+
+
+class Other(NamedTuple):
+    """Spectra of another scene than the one that they are taken for."""
+
+    name: str
+    """What is other."""
+    intensity: Array
+    """Spectra, (D, K)."""
+
+
+class Misreading(NamedTuple):
+    """How changes of diameter are misread, relative to the change, over a sweep."""
+
+    mean: float
+    """Mean relative error of a change."""
+    scatter: float
+    """Standard deviation of the relative error over the diameters."""
+
+
+def others(config: Config, foci: Array, threads: int) -> list[Other]:
+    """Trace a sweep (foci (D,) in µm) of the model's own scene and of others."""
+    scene = config.scene
+    gap, index = scene.gap + GAP, scene.refractive_index.neuron + INDEX
+    changes: Mapping[str, tuple[Mapping[str, Any], float]] = {
+        "own": ({}, 0.0),
+        f"gap {1000 * GAP:+g} nm": ({"scene": {"gap": format_length(gap)}}, 0.0),
+        f"index {INDEX:+g}": ({"scene": {"refractive_index": {"neuron": index}}}, 0.0),
+        f"focus {1000 * FOCUS:+g} nm": ({}, FOCUS),
+    }
+    diameters = config.sweep.diameters.values()
+    return [
+        Other(name, modelled(changed(config, overlay), diameters, foci + off, threads).intensity)
+        for name, (overlay, off) in changes.items()
+    ]
+
+
+def misreading(
+    processing: Processing, band: Band, diameter: Array, own: Array, other: Array, model: Model
+) -> Misreading:
+    """Read another scene's spectra (D, K) with the slopes, or the model, of one's own (D, K)."""
+    found = slopes(processing, band, diameter, other, model)
+    expected = slopes(processing, band, diameter, own, model)
+    relative = found / expected - 1
+    return Misreading(float(relative.mean()), float(relative.std()))
+
+
+def likelihood_offset(model: Model, diameter: Array, intensity: Array) -> float:
+    """Give the mean error of diameters (D,) themselves, µm, by maximum likelihood."""
+    return float(np.mean(maximum_likelihood(intensity, model) - diameter))

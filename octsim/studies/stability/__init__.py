@@ -1,0 +1,1 @@
+"""Rounding at the extremes, against 50 digits."""

@@ -1,0 +1,242 @@
+"""One cell of the stability matrix: octsim's doubles beside 50 digits and beside float32."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from octsim.base.errors import ConfigError
+from octsim.config.models import Config
+from octsim.config.rounding import rounding_remarks
+from octsim.optics.band import wavenumbers
+from octsim.optics.beam import Beam
+from octsim.optics.detector import detector_of
+from octsim.optics.scene import neuron_on_glass
+from octsim.schemes.field_sum import intensity
+from octsim.studies.stability.exact import follow, numbers
+from octsim.studies.stability.matrix import Cell
+from octsim.studies.stability.pairs import (
+    RAYS,
+    Case,
+    Conditions,
+    Key,
+    Pair,
+    compared,
+    prepared,
+    sample,
+    traced,
+)
+from octsim.studies.stability.single import follow_single
+from octsim.studies.stability.verdict import (
+    NOTHING,
+    TOLERANCE,
+    UNKNOWN,
+    Cost,
+    Row,
+    Status,
+    bound,
+    cost,
+)
+from octsim.tracing.faces import faces_of
+
+WAVENUMBERS = 100
+"""Most wavenumbers of a cell at which the sum is compared."""
+
+
+def _phase_error(case: Case, pair: Pair) -> float:
+    return float(abs(pair.path - pair.end.path)) * case.k_max
+
+
+def _amplitude_error(pair: Pair) -> float:
+    exact = pair.end.amplitude
+    if abs(exact) < NOTHING:
+        return abs(pair.amplitude)
+    return float(abs(pair.amplitude - exact) / abs(exact))
+
+
+def worst(
+    errors: list[tuple[float, Key]], conditions: Conditions, which: int, edges: set[Key]
+) -> Cost:
+    """Give the largest error and share of the bound; paths at an edge go to `edges`.
+
+    Errors below the tolerance are within any bound. Of those only the largest gets its condition,
+    and its share is that of the tolerance: none of them has a larger one.
+    """
+    found = []
+    for error, key in sorted(errors, reverse=True):
+        condition = conditions.of(key)[which]
+        if error <= TOLERANCE:
+            found.append(Cost(error, condition, error / TOLERANCE))
+            break
+        measured = cost(error, condition)
+        if measured.share > 1 and conditions.at_edge(key):
+            edges.add(key)
+        else:
+            found.append(measured)
+    largest = max((measured.error for measured in found), default=math.nan)
+    return max(found, key=lambda c: c.share, default=UNKNOWN)._replace(error=largest)
+
+
+def phase_slope(case: Case, pairs: list[Pair], conditions: Conditions) -> Cost:
+    """Measure the rounding of a phase slope, rad/µm: k_max (Λ(d + δ) − Λ(d − δ)) / (2 δ).
+
+    Of the brightest path through the neuron that both diameters have; δ is half of the sweep's
+    step, or d/100 where that is less. Both tracers take the same two diameters, so that what is
+    left is rounding, not the difference quotient's own error.
+    """
+    sweep, d = case.config.sweep.diameters, case.cell.diameter
+    half = min((sweep.stop - sweep.start) / (sweep.num - 1) / 2, d / 100)
+    low, high = d - half, d + half
+    through = [pair for pair in pairs if _goes_through(pair.key[1])]
+    for pair in sorted(through, key=lambda pair: -abs(pair.amplitude))[:5]:
+        ray, code = pair.key
+        place = np.flatnonzero(case.beam.number == ray)
+        alone = Beam(*(values[place] for values in case.beam))
+        lengths = []
+        for diameter in (low, high):
+            found = traced(case.config, alone, diameter, case.cell.focus)
+            end = follow(case.inputs(ray, diameter), code)
+            (at,) = np.nonzero(found.path == code)
+            if at.size == 1 and end.reason == "detected":
+                lengths.append((float(found.optical_path_length[at[0]]), end.path))
+        if len(lengths) == 2:
+            (low_path, low_exact), (high_path, high_exact) = lengths
+            scale = case.k_max / (high - low)
+            error = float(abs((high_path - high_exact) - (low_path - low_exact))) * scale
+            condition = conditions.of(pair.key)[0]
+            allowed = 2 * bound(condition) / (high - low)
+            return Cost(error, condition, error / allowed)
+    return UNKNOWN
+
+
+def _goes_through(code: int) -> bool:
+    while code > 1:
+        code, digit = divmod(code, 4)
+        if digit == 3:
+            return True
+    return False
+
+
+def _terms(case: Case, k: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Give the fields at a wavenumber, each rounded once: k Λ is used to the last of its digits."""
+    path = case.found.optical_path_length
+    product = k * path
+    # Dekker's product: what rounding took from it
+    split = 134217729.0
+    k_high = split * k - (split * k - k)
+    p_high = split * path - (split * path - path)
+    k_low, p_low = k - k_high, path - p_high
+    rest = ((k_high * p_high - product) + k_high * p_low + k_low * p_high) + k_low * p_low
+    cos, sin = np.cos(product), np.sin(product)
+    return case.found.amplitude * (cos - rest * sin), case.found.amplitude * (sin + rest * cos)
+
+
+def spectrum_sum(case: Case) -> Cost:
+    """Measure the sum over rays against an exactly rounded one, over the largest intensity.
+
+    The condition number is that of the paths' last digits in the sum, 2 k Σ|E Λ| Σ|E| / max I.
+    """
+    amplitude, path = case.found.amplitude, case.found.optical_path_length
+    k = wavenumbers(case.config.spectrum)
+    summed = intensity(amplitude, path, k)
+    at = np.unique(np.linspace(0, k.size - 1, WAVENUMBERS).astype(int))
+    if amplitude.size * at.size > 2_000_000:
+        at = at[:: 1 + amplitude.size * at.size // 2_000_000]
+    exact = []
+    for i in at.tolist():
+        real, imaginary = map(math.fsum, _terms(case, float(k[i])))
+        exact.append(real**2 + imaginary**2)
+    peak = max(float(summed.max()), *exact)
+    if peak == 0:
+        return UNKNOWN
+    error = float(np.abs(summed[at] - exact).max()) / peak
+    total = np.abs(amplitude).sum()
+    return cost(error, float(2 * k[-1] * np.abs(amplitude * path).sum() * total / peak))
+
+
+def launch_error(case: Case, rays: list[int]) -> Cost:
+    """Measure the places of a spiral's rays on the objective, as fractions of its radius."""
+    if case.cell.positions is not None:
+        return UNKNOWN
+    given = case.inputs(0)
+    ratio = given.numerical_aperture / given.glass
+    golden = (numbers.sqrt(5) - 1) / 2
+    last = max(case.x.size - 1, 1)
+    errors = [0.0]
+    for j in rays:
+        turn, distance = 2 * numbers.pi * j * golden, numbers.sqrt(numbers.mpf(j) / last)
+        for exact, at in ((numbers.cos(turn), case.x[j]), (numbers.sin(turn), case.y[j])):
+            errors.append(float(abs(exact * distance - numbers.mpf(float(at)) / given.aperture)))
+    # the radius, f tan(asin(NA / n)), feels NA and n as 1 / (1 − (NA / n)²) each, and f as 1
+    return cost(max(errors), float(1 + 2 / (1 - ratio**2)))
+
+
+def single(case: Case, pairs: list[Pair]) -> Iterator[tuple[float, float]]:
+    """Give the errors of float32 in phase (rad) and amplitude; infinite where a ray is lost."""
+    faces = faces_of(neuron_on_glass(case.config.scene, case.cell.diameter))
+    detector = detector_of(case.config)
+    place = np.empty_like(case.beam.number)
+    place[case.beam.number] = np.arange(place.size)
+    for pair in pairs:
+        ray, code = pair.key
+        arguments = (case.cell.focus, int(place[ray]), code, np.float32)
+        with np.errstate(all="ignore"):
+            arrival = follow_single(faces, detector, case.beam, *arguments)
+        if arrival is None or not np.isfinite(arrival).all():
+            yield math.inf, math.inf
+            continue
+        other = pair._replace(
+            amplitude=float(arrival.amplitude), path=float(arrival.optical_path_length)
+        )
+        yield _phase_error(case, other), _amplitude_error(other)
+
+
+def measure(cell: Cell, base: Config, most: int = RAYS) -> Row:
+    """Measure a cell, with at most so many rays of 50 digits."""
+    try:
+        config = cell.config(base)
+    except ConfigError as error:
+        return Row(Status.REFUSED, str(error))
+    case = prepared(cell, config)
+    if case.x.size == 0:
+        return Row(Status.NO_SUCH_RAY, "no ray of this scene is at that edge")
+    results = (case.found.amplitude, case.found.optical_path_length)
+    if not all(np.isfinite(values).all() for values in results):
+        return Row(Status.NOT_FINITE, "an amplitude or a path is not finite")
+    rays, conditions = sample(case, most), Conditions(case)
+    pairs, edges, lost = compared(case, rays, conditions)
+    at_edge: set[Key] = set()
+    phase_errors = [(_phase_error(case, pair), pair.key) for pair in pairs]
+    costs: dict[str, Cost] = {
+        "phase": worst(phase_errors, conditions, 0, at_edge),
+        "amplitude": worst(
+            [(_amplitude_error(pair), pair.key) for pair in pairs], conditions, 1, at_edge
+        ),
+        "phase_slope": phase_slope(case, pairs, conditions),
+        "spectrum": spectrum_sum(case),
+        "launch": launch_error(case, rays),
+    }
+    edges += len(at_edge)
+    narrow = list(single(case, pairs))
+    kept = [errors for errors in narrow if math.isfinite(errors[0])]
+    over = [name for name, measured in costs.items() if measured.share > 1]
+    reason = lost or (f"{', '.join(over)} beyond the bound" if over else "")
+    status = Status.BEYOND if reason else Status.EDGE if edges else Status.WITHIN
+    warned = rounding_remarks(config)
+    if reason and warned:
+        status, reason = Status.WARNED, warned[0]
+    elif warned and costs["phase"].error > TOLERANCE:
+        reason = warned[0]
+    return Row(
+        status,
+        reason,
+        paths_compared=len(pairs),
+        paths_at_edge=edges,
+        optical_path_length_error=max((error for error, _ in phase_errors), default=math.nan)
+        / case.k_max,
+        single_phase_error=max((phase for phase, _ in kept), default=math.nan),
+        single_amplitude_error=max((amplitude for _, amplitude in kept), default=math.nan),
+        single_lost=1 - len(kept) / len(narrow) if narrow else math.nan,
+        **costs,
+    )

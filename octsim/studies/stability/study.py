@@ -1,0 +1,97 @@
+"""The stability matrix: octsim's doubles beside 50 digits, cell by cell (`snakemake stability`)."""
+
+import multiprocessing
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from octsim.config.models import Config
+from octsim.datasets.files import flags, make
+from octsim.studies.stability.compare import measure
+from octsim.studies.stability.matrix import cells
+from octsim.studies.stability.pairs import RAYS
+from octsim.studies.stability.verdict import Row, Status
+
+COSTS = ("phase", "amplitude", "phase_slope", "spectrum", "launch")
+NUMBERS = (
+    "paths_compared", "paths_at_edge", "optical_path_length_error", "single_phase_error",
+    "single_amplitude_error", "single_lost",
+)  # fmt: skip
+
+
+def row(place: int, base: Config, most: int) -> Row:
+    """Measure the cell at a place of the matrix."""
+    return measure(cells(base)[place], base, most)
+
+
+def stability(
+    config: Config,
+    processes: int = 1,
+    prepare: Callable[[], None] | None = None,
+    most: int = RAYS,
+) -> xr.Dataset:
+    """Measure every cell of the matrix.
+
+    Parameters
+    ----------
+    config : Config
+        The config that the matrix starts from.
+    processes : int
+        How many work at a time.
+    prepare : callable, optional
+        What each of several does first.
+    most : int
+        Most rays of a cell that are traced with 50 digits.
+
+    Returns
+    -------
+    Dataset
+        For each cell, named corner / factor / value: errors, condition numbers, shares of the
+        bound max(1e-9, 8 ε × condition number), what float32 would cost, status and reason.
+    """
+    matrix = cells(config)
+    work, places = partial(row, base=config, most=most), range(len(matrix))
+    if processes == 1:
+        rows = list(map(work, places))
+    else:
+        # forked, as the workflow's script can't be imported anew by a fresh interpreter
+        context = multiprocessing.get_context("fork")
+        with ProcessPoolExecutor(processes, context, prepare) as pool:
+            rows = list(pool.map(work, places))
+    variables: dict[str, object] = {
+        name: ("cell", np.array([getattr(r, name) for r in rows])) for name in NUMBERS
+    }
+    for name in COSTS:
+        for part in ("error", "condition", "share"):
+            values = np.array([getattr(getattr(r, name), part) for r in rows])
+            variables[f"{name}_{part}"] = ("cell", values)
+    codes, meaning = flags(Status, np.array([r.status for r in rows]))
+    variables["status"] = ("cell", codes, meaning | {"long_name": "what became of the cell"})
+    variables["reason"] = ("cell", [r.reason for r in rows])
+    return make(
+        "stability",
+        config,
+        "Error of octsim's doubles against a tracer of 50 digits, at the extremes",
+        variables,
+        {
+            "cell": [cell.name for cell in matrix],
+            "corner": ("cell", [cell.corner for cell in matrix]),
+            "factor": ("cell", [cell.factor for cell in matrix]),
+            "value": ("cell", [cell.value for cell in matrix]),
+        },
+        __name__,
+    )
+
+
+def summary(dataset: xr.Dataset) -> str:
+    """Say in one line what the matrix shows."""
+    status = dataset["status"].values
+    counts = [
+        f"{int((status == member).sum())} {member.name.lower().replace('_', ' ')}"
+        for member in Status
+        if (status == member).any()
+    ]
+    return f"stability: {status.size} cells, {', '.join(counts)}"

@@ -1,0 +1,130 @@
+"""What the trade of cost for accuracy varies: one factor of a run's config at a time."""
+
+import math
+import warnings
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from octsim.config.load import load_config
+from octsim.config.models import PRESETS, Config
+
+RAYS = (100, 300, 1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000)
+ACCURACIES = (
+    1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8,
+)  # fmt: skip
+MAX_INTERSECTIONS = (1, 3, 5, 7, 9, 11, 15)
+MIN_AMPLITUDES = (0.0, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
+SAMPLES = (50, 100, 200, 500, 1000, 2000, 4000)
+CONVERGED_SAMPLES = 16_000
+FINER = 4
+"""How many times as many diameters give the converged slope."""
+_ACCURATE = 1e-6  # where another factor's error is looked for
+_MOST_FOR_SWEEP = 100_000  # rays; more are traced at some diameters only
+_MOST_FOR_LAW = 10_000  # rays
+_SOME = 15  # every so many, where the whole sweep would take minutes
+
+
+class Setting(NamedTuple):
+    """One point of the trade: a config, and what of it is measured."""
+
+    factor: str
+    """Key of the config that is varied."""
+    value: float
+    """What it is."""
+    config: Config
+    """The whole config."""
+    every: int = 1
+    """Which of the diameters are traced; without all there is no phase slope."""
+    law: bool = True
+    """Whether the focus law is fitted."""
+
+
+def changed(config: Config, *overlays: Mapping[str, Any]) -> Config:
+    """Lay overlays over a config; what a user would be warned of has been said of the run."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return load_config(config.to_dict(), *overlays)
+
+
+def by_rays(config: Config, rays: int) -> Config:
+    """Give a config that counts rays."""
+    return changed(config, {"tracing": {"preset": None, "scheme": "vogel", "rays": rays}})
+
+
+def by_accuracy(config: Config, accuracy: float, **tracing: int) -> Config:
+    """Give a config that integrates light paths to an accuracy."""
+    asked = {"preset": None, "scheme": "paths", "accuracy": accuracy}
+    return changed(config, {"tracing": asked | tracing})
+
+
+def reference(config: Config) -> Config:
+    """Give the config whose results the errors are measured from."""
+    most = max(15, config.tracing.max_intersections)
+    return by_accuracy(config, 1e-9, max_intersections=most)
+
+
+def settings(config: Config) -> list[Setting]:
+    """List the points of a run's trade, factor after factor.
+
+    The factor ``reference`` is the reference itself at other settings: how far it moves bounds
+    its own error. The run's own setting is added as the factor ``run``, unless it is one of the
+    others.
+    """
+    listed = [*_tracing(config), *_sampling(config)]
+    if not any(is_the_runs(setting, config) for setting in listed):
+        listed.append(Setting("run", math.nan, config))
+    return listed
+
+
+def is_the_runs(setting: Setting, config: Config) -> bool:
+    """Tell whether a setting traces and samples just as the run itself."""
+    return _measured(setting.config) == _measured(config) and setting.every == 1
+
+
+def preset_of(setting: Setting) -> str:
+    """Give the name of the preset that a setting is, or nothing."""
+    if setting.factor == "tracing.accuracy":
+        for name, preset in PRESETS.items():
+            if all(getattr(setting.config.tracing, key) == preset[key] for key in preset):
+                return name
+    return ""
+
+
+def _measured(config: Config) -> dict[str, Any]:
+    """Give what of a config the results follow from: not what its scheme does not read."""
+    tracing = config.to_dict()["tracing"]
+    unread = {"vogel": ("preset", "accuracy"), "paths": ("preset", "rays", "min_amplitude")}
+    read = {key: tracing[key] for key in tracing if key not in unread[tracing["scheme"]]}
+    return read | {"samples": config.spectrum.samples, "num": config.sweep.diameters.num}
+
+
+def _tracing(config: Config) -> Iterator[Setting]:
+    for rays in RAYS:
+        every = 1 if rays <= _MOST_FOR_SWEEP else _SOME
+        yield Setting("tracing.rays", rays, by_rays(config, rays), every, law=rays <= _MOST_FOR_LAW)
+    for accuracy in ACCURACIES:
+        yield Setting("tracing.accuracy", accuracy, by_accuracy(config, accuracy))
+    for most in MAX_INTERSECTIONS:
+        limited = by_accuracy(config, _ACCURATE, max_intersections=most)
+        yield Setting("tracing.max_intersections", most, limited)
+    for least in MIN_AMPLITUDES:
+        fainter = changed(
+            by_rays(config, config.tracing.rays), {"tracing": {"min_amplitude": least}}
+        )
+        yield Setting("tracing.min_amplitude", least, fainter)
+    other = by_accuracy(config, 1e-8, max_intersections=30)
+    yield Setting("reference", 1e-8, other, _SOME, law=False)
+
+
+def _sampling(config: Config) -> Iterator[Setting]:
+    accurate = by_accuracy(config, _ACCURATE)
+    for samples in SAMPLES:
+        yield Setting(
+            "spectrum.samples", samples, changed(accurate, {"spectrum": {"samples": samples}})
+        )
+    steps = config.sweep.diameters.num - 1
+    # of each, every diameter is one of the converged slope's
+    coarser = [steps // n for n in (10, 6, 5, 3, 2, 1) if steps % n == 0 and steps // n >= 2]
+    for count in (*coarser, 2 * steps):
+        swept = changed(accurate, {"sweep": {"diameters": {"num": count + 1}}})
+        yield Setting("sweep.diameters.num", count + 1, swept, law=False)

@@ -1,0 +1,1 @@
+"""Rays through a scene: faces, blocks of rays, the tree, light paths."""

@@ -1,0 +1,100 @@
+"""What reruns a stage: code that it uses, and nothing that only reads differently."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from octsim.base.provenance import source_digest
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Path:
+    shutil.copytree(
+        ROOT / "octsim", tmp_path / "octsim", ignore=shutil.ignore_patterns("__pycache__")
+    )
+    shutil.copytree(ROOT / "workflow", tmp_path / "workflow")
+    return tmp_path
+
+
+def run_in(copy: Path, code: str) -> str:
+    command = [sys.executable, "-c", f"import sys; sys.path.insert(0, {str(copy)!r})\n{code}"]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+
+
+def digest_in(copy: Path, source: str) -> str:
+    return run_in(
+        copy,
+        "from pathlib import Path\nfrom octsim.base.provenance import source_digest\n"
+        f"print(source_digest({source}))",
+    )
+
+
+def edit(file: Path, old: str, new: str) -> None:
+    text = file.read_text(encoding="utf-8")
+    assert old in text
+    file.write_text(text.replace(old, new), encoding="utf-8")
+
+
+SPECTRA = "Path('workflow/scripts/spectra.py').resolve()"
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        (
+            "octsim/optics/interface.py",
+            '"""Turn a direction by the law of',
+            '"""Send a ray back by the law of',
+        ),
+        ("octsim/optics/interface.py", "twice = 2 * cos_i", "twice = 2*cos_i  # twice"),
+        ("octsim/figures/phase.py", "linewidth=1.0", "linewidth=2.0"),
+    ],
+    ids=["docstring", "comment and format", "a module that is not used"],
+)
+def test_what_changes_no_result_changes_no_digest(
+    copy: Path, file: str, old: str, new: str
+) -> None:
+    before = digest_in(copy, "'octsim.stages.sweep'")
+    edit(copy / file, old, new)
+    assert digest_in(copy, "'octsim.stages.sweep'") == before
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        ("octsim/optics/beam.py", "41475558", "41475559"),
+        ("octsim/optics/interface.py", "twice = 2 * cos_i", "twice = 3 * cos_i"),
+    ],
+)
+def test_a_changed_formula_changes_the_digest_of_what_uses_it(
+    copy: Path, file: str, old: str, new: str
+) -> None:
+    users, others = ("'octsim.stages.sweep'", "'octsim.stages.focus'"), ("'octsim.config.units'",)
+    before = {source: digest_in(copy, source) for source in users + others}
+    edit(copy / file, old, new)
+    after = {source: digest_in(copy, source) for source in users + others}
+    assert {source for source in before if before[source] != after[source]} == set(users)
+
+
+def test_a_script_s_digest_covers_the_code_it_shares_with_other_scripts(copy: Path) -> None:
+    script = copy / "workflow" / "scripts" / "spectra.py"
+    before = source_digest(script)
+    edit(copy / "workflow" / "scripts" / "job.py", "points.from_cache}", "points.from_cache + 1}")
+    assert digest_in(copy, f"Path({str(script)!r})") != before
+
+
+def test_a_formula_changed_in_another_file_is_compiled_anew(copy: Path) -> None:
+    code = (
+        "from octsim.config.load import load_config\n"
+        "from octsim.instrument.instrument import tracer\n"
+        "config = load_config({'tracing': {'rays': 1, 'max_intersections': 1}})\n"
+        "print(tracer(config)(1.4, 0.5).amplitude[0])"
+    )
+    before = float(run_in(copy, code))
+    edit(copy / "octsim" / "optics" / "detector.py", "return 1 - squared", "return 0.5 - squared")
+    assert float(run_in(copy, code)) == pytest.approx(before / 2)

@@ -1,0 +1,105 @@
+"""The command says what is kept, and frees it; what is wrong is one line."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from octsim.cli.main import main
+from octsim.instrument.cache import PointCache
+
+ENTRIES = [(b"%d" % number, bytes(20_000)) for number in range(100)]
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def fill(file: Path) -> None:
+    with PointCache(file, 1.5) as cache:
+        cache.put(ENTRIES)
+
+
+def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "octsim", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False, env=os.environ)
+
+
+def test_show_says_what_there_is(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = time.strftime("%Y-%m-%d %H:%M:%S")
+    fill(folder / ".octsim" / "points.sqlite")
+    assert main(["cache", "show"]) == 0
+    shown = capsys.readouterr()
+    first, points, size, last, oldest = shown.out.splitlines()
+    assert first == ".octsim/points.sqlite: point cache, version 1"
+    assert points.split() == ["points", "100"]
+    assert 2.0 <= float(size.split()[1]) < 2.7
+    assert size.endswith("MB of 1500 MB allowed")
+    now = time.strftime("%Y-%m-%d %H:%M:%S")
+    assert before <= oldest.split(maxsplit=2)[2] <= last.split(maxsplit=2)[2] <= now
+    assert shown.err == ""
+
+
+def test_clear_frees_what_it_says(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = folder / "mine.sqlite"
+    fill(file)
+    before = file.stat().st_size
+    assert main(["cache", "clear", "--file", "mine.sqlite"]) == 0
+    freed = (before - file.stat().st_size) / 1e6
+    assert freed > 2.0
+    assert capsys.readouterr().out == f"mine.sqlite: {freed:.1f} MB freed\n"
+    assert main(["cache", "show", "--file", "mine.sqlite"]) == 0
+    assert "points     0\n" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("action", ["show", "clear"])
+def test_no_cache_is_said_and_none_is_made(
+    action: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["cache", action]) == 0
+    assert capsys.readouterr().out == ".octsim/points.sqlite: no cache yet\n"
+    assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize("action", ["show", "clear"])
+def test_somebody_s_file_is_refused_in_a_line_and_stays(action: str, folder: Path) -> None:
+    (folder / "notes").write_text("mine")
+    done = run("cache", action, "--file", "notes")
+    assert done.returncode == 1
+    assert done.stderr.splitlines() == [
+        "octsim: notes: is not a point cache of octsim; move it away or name another"
+    ]
+    assert (folder / "notes").read_text() == "mine"
+
+
+def test_a_damaged_cache_is_shown_as_one_and_replaced(folder: Path) -> None:
+    file = folder / "points.sqlite"
+    fill(file)
+    with file.open("r+b") as stream:
+        stream.write(b"?")
+    done = run("cache", "show", "--file", "points.sqlite")
+    assert done.returncode == 1
+    assert done.stderr.startswith("octsim: points.sqlite: damaged (")
+    assert "`octsim cache clear --file points.sqlite` makes a new one" in done.stderr
+    assert run("cache", "clear", "--file", "points.sqlite").returncode == 0
+    assert run("cache", "show", "--file", "points.sqlite").returncode == 0
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [[], ["cash"], ["cache"], ["cache", "empty"], ["cache", "show", "more"],
+     ["cache", "clear", "--file"]],
+)  # fmt: skip
+def test_arguments_that_are_none_are_one_line(arguments: list[str], folder: Path) -> None:
+    assert folder.is_dir()
+    done = run(*arguments)
+    assert done.returncode == 2
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("octsim")
+    assert "--help` says what there is" in line
+    assert done.stdout == ""

@@ -1,0 +1,171 @@
+"""Points come from the cache where they are kept, to the bit, and else are traced."""
+
+import random
+import sqlite3
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import octsim
+from octsim.config.load import load_config
+from octsim.config.models import Config
+from octsim.instrument.cache import opened
+from octsim.instrument.instrument import Tracer, tracer
+from octsim.instrument.points import Points
+
+SMALL: dict[str, Any] = {
+    "tracing": {"rays": 60},
+    "spectrum": {"samples": 20},
+    "sweep": {
+        "diameters": {"start": "1 um", "stop": "2 um", "num": 151},
+        "focus": {"slope": 0.58, "intercept": "69 nm"},
+    },
+}
+PATHS: dict[str, Any] = {"tracing": {"scheme": "paths", "accuracy": 1e-2}}
+
+
+@pytest.fixture
+def count(tmp_path: Path) -> Callable[..., tuple[int, int]]:
+    """Trace a sweep by the one cache of a test; give how many were traced, how many found."""
+
+    def traced(*overlays: dict[str, Any]) -> tuple[int, int]:
+        with opened(tmp_path / "points.sqlite", 1) as cache:
+            points = Points(cache)
+            octsim.detections(load_config(SMALL, *overlays), None, 2, points)
+            points.keep()
+        return points.traced, points.from_cache
+
+    return traced
+
+
+def sweep(num: int) -> dict[str, Any]:
+    return {"sweep": {"diameters": {"num": num}}}
+
+
+@pytest.mark.parametrize("scheme", [{}, PATHS])
+def test_only_new_diameters_are_traced(
+    scheme: dict[str, Any], count: Callable[..., tuple[int, int]]
+) -> None:
+    assert count(scheme) == (151, 0)
+    assert count(scheme, sweep(301)) == (150, 151)
+    assert count(scheme, sweep(51)) == (0, 51)
+    assert count(scheme, sweep(301)) == (0, 301)
+
+
+def test_what_a_point_does_not_depend_on_traces_nothing(
+    count: Callable[..., tuple[int, int]],
+) -> None:
+    assert count(sweep(11)) == (11, 0)
+    for edit in (
+        {"run": "other"},
+        {"spectrum": {"wavelength": {"min": "600 nm"}}},
+        {"processing": {"window": "hann"}},
+        {"tracing": {"accuracy": 1e-3}},
+        {"focus_law": {"fraction": {"num": 9}}},
+    ):
+        assert count(sweep(11), edit) == (0, 11)
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        {"scene": {"gap": "6 nm"}},
+        {"scene": {"refractive_index": {"neuron": 1.4}}},
+        {"objective": {"numerical_aperture": 1.19}},
+        {"objective": {"focus_distance": "301 um"}},
+        {"detector": {"core_diameter": "4.5 um"}},
+        {"tracing": {"rays": 61}},
+        {"tracing": {"max_intersections": 9}},
+        {"tracing": {"min_amplitude": 1e-9}},
+        {"sweep": {"focus": {"intercept": "70 nm"}}},
+        PATHS,
+    ],
+)
+def test_what_a_point_depends_on_traces_it_and_going_back_does_not(
+    edit: dict[str, Any], count: Callable[..., tuple[int, int]]
+) -> None:
+    assert count(sweep(5)) == (5, 0)
+    assert count(sweep(5), edit) == (5, 0)
+    assert count(sweep(5)) == (0, 5)
+
+
+def test_under_the_scheme_paths_a_point_depends_on_the_band_and_the_accuracy(
+    count: Callable[..., tuple[int, int]],
+) -> None:
+    assert count(PATHS, sweep(3)) == (3, 0)
+    assert count(PATHS, sweep(3), {"spectrum": {"wavelength": {"min": "640 nm"}}}) == (3, 0)
+    assert count(PATHS, sweep(3), {"tracing": {"accuracy": 2e-2}}) == (3, 0)
+    assert count(PATHS, sweep(3), {"tracing": {"rays": 7}}) == (0, 3)
+
+
+def test_a_code_that_changes_traces_anew(
+    count: Callable[..., tuple[int, int]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert count(sweep(3)) == (3, 0)
+    monkeypatch.setattr("octsim.instrument.points.source_digest", lambda module: f"edited {module}")
+    assert count(sweep(3)) == (3, 0)
+
+
+def same(one: Any, other: Any) -> bool:
+    return all(
+        np.array_equal(x, y) if isinstance(x, np.ndarray) else x == y
+        for x, y in zip(one, other, strict=True)
+    )
+
+
+@pytest.mark.parametrize("scheme", [{}, PATHS])
+def test_a_point_depends_on_nothing_but_itself(scheme: dict[str, Any], tmp_path: Path) -> None:
+    config = load_config(SMALL, scheme)
+    draw = random.Random(1)
+    sweep = [(draw.uniform(0.8, 2.4), draw.uniform(0.5, 1.5)) for _ in range(12)]
+    alone = {point: tracer(config)(*point) for point in sweep}
+    with opened(tmp_path / "points.sqlite", 1) as cache:
+        for part in (sweep[:5], sweep[3:9], sweep):
+            shuffled = draw.sample(part, len(part))
+            points = Points(cache)
+            trace_at: Tracer = points.tracer(config)
+            assert all(same(trace_at(*point), alone[point]) for point in shuffled)
+            points.keep()
+    assert points.from_cache == 9
+    assert points.traced == 3
+
+
+def test_a_damaged_entry_is_traced_again_and_kept(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    config, file = load_config(SMALL), tmp_path / "points.sqlite"
+
+    def light() -> tuple[Any, int]:
+        with opened(file, 1) as cache:
+            points = Points(cache)
+            found = points.tracer(config)(1.4, 0.9)
+            points.keep()
+        return found, points.traced
+
+    first, _ = light()
+    with sqlite3.connect(file) as database:
+        number, body = database.execute("SELECT number, body FROM bodies").fetchone()
+        spoilt = bytearray(body)
+        spoilt[len(body) // 2] ^= 1
+        database.execute("UPDATE bodies SET body = ? WHERE number = ?", (bytes(spoilt), number))
+    database.close()
+    again, traced = light()
+    assert traced == 1
+    assert same(first, again)
+    assert "damaged" in caplog.text
+    assert light()[1] == 0
+
+
+def test_equal_diameters_of_two_ranges_have_the_same_bits() -> None:
+    def diameters(config: Config) -> list[float]:
+        return list(map(float, config.sweep.diameters.values()))
+
+    for num in (11, 76, 151, 601):
+        coarse = load_config(SMALL, sweep(num))
+        fine = load_config(SMALL, sweep(3 * (num - 1) + 1))
+        assert diameters(coarse) == diameters(fine)[::3]
+        exact = np.linspace(1, 2, num)
+        assert np.abs(np.array(diameters(coarse)) - exact).max() < 1e-9  # a femtometre

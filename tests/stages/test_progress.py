@@ -1,0 +1,35 @@
+"""How far a stage is stands in its log, and changes nothing of it."""
+
+import logging
+
+import pytest
+
+import octsim
+from octsim.config.load import load_config
+from octsim.datasets.stage import gathered
+from octsim.stages import progress
+
+
+def test_a_log_tells_how_far_a_stage_is_and_how_long_it_takes(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(progress, "_BETWEEN_LINES", 0.0)
+    config = load_config(
+        {
+            "tracing": {"rays": 50},
+            "sweep": {"diameters": {"num": 5}, "focus": {"slope": 0.58, "intercept": "69 nm"}},
+            "grid": {"scene.gap": ["1 nm", "2 nm", "3 nm"]},
+        }
+    )
+    with caplog.at_level(logging.INFO):
+        watched = gathered(progress.watched(octsim.detections.stream(config)))
+    assert watched.identical(octsim.detections(config))
+    said = [record.getMessage() for record in caplog.records]
+    assert any("detections:" in line and "10/15" in line and "point/s" in line for line in said)
+
+
+def test_what_is_short_is_not_told_of(caplog: pytest.LogCaptureFixture) -> None:
+    config = load_config({"tracing": {"rays": 50}, "focus_scan": {"focus": {"num": 5}}})
+    with caplog.at_level(logging.INFO):
+        gathered(progress.watched(octsim.focus_scan.stream(config)))
+    assert not caplog.records

@@ -1,0 +1,320 @@
+"""The calibration: derivatives, held phases, and slopes, against closed forms and other ways."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from octsim.base.errors import DatasetError, OctsimError
+from octsim.config.load import load_config
+from octsim.config.models import Config
+from octsim.datasets.files import read, write
+from octsim.figures.calibration import calibration_figure
+from octsim.figures.style import look, save
+from octsim.instrument.instrument import spectrometer, summer, tracer
+from octsim.optics.band import wavenumbers
+from octsim.optics.two_beams import ideal_spectra, predicted_phase_slope
+from octsim.phase.derivatives import derivative, stencil, wrapped
+from octsim.phase.estimators.series import series_phases
+from octsim.schemes.light import AccuracyStatus, Light
+from octsim.stages.phase_slope import fourier_components
+from octsim.studies.calibration import study as calibrate
+from octsim.studies.calibration.study import calibration, interpolation_error, summary
+from octsim.studies.calibration.tolerances import PARAMETERS, drawn, moved, offsets_of, value_of
+from octsim.studies.sides import SIDES, path_field, side_slopes
+from octsim.studies.tradeoff.settings import by_rays, changed
+from octsim.tracing.follow import path_name
+
+Array = NDArray[np.float64]
+K = wavenumbers(Config().spectrum)
+N = Config().scene.refractive_index.neuron
+FITTED = calibrate.calibrating(Config())
+
+
+@pytest.mark.parametrize(("at", "least"), [(1.0, -np.inf), (0.0, 0.0), (0.02, 0.0)])
+def test_a_derivative_is_exact_for_polynomials_also_at_a_bound(at: float, least: float) -> None:
+    offsets = stencil(at, 0.1, least)
+    assert (at + offsets >= least - 1e-15).all()
+    quartic = np.polynomial.Polynomial([1.0, -2.0, 3.0, -4.0, 5.0])
+    found = derivative(offsets, quartic(at + offsets))
+    assert found.value == pytest.approx(quartic.deriv()(at), rel=1e-11)
+    parabola = np.polynomial.Polynomial([1.0, -2.0, 3.0])
+    assert derivative(offsets, parabola(at + offsets)).error < 1e-11
+
+
+def test_a_derivative_is_richardsons_and_its_error_is_on_the_safe_side() -> None:
+    offsets = stencil(0.0, 0.2)
+    columns = np.stack((np.sin(1 + offsets), np.exp(offsets)), axis=1)
+    found = derivative(offsets, columns)
+
+    def central(step: int) -> Array:
+        ends: Array = (columns[2 + step] - columns[2 - step]) / (offsets[2 + step] * 2)
+        return ends
+
+    assert found.value == pytest.approx((4 * central(1) - central(2)) / 3, rel=1e-12)
+    off = np.abs(found.value - [np.cos(1.0), 1.0])
+    assert (off < found.error).all()
+    assert (off > 1e-8).all()
+
+
+def test_the_fitted_sinusoid_of_plates_moves_as_predicted() -> None:
+    diameters = 1.4 + 1e-3 * np.array([-1.0, 0.0, 1.0])
+    phases = series_phases(1 + ideal_spectra(N, diameters, K), K, 1.4 * N, FITTED)
+    # at its own frequency the fit is exact
+    middle = (K[0] + K[-1]) / 2
+    assert phases[1] == pytest.approx(np.angle(np.exp(2j * N * 1.4 * middle)), abs=1e-9)
+    slope = wrapped(phases[2] - phases[0]) / 2e-3
+    assert slope == pytest.approx(predicted_phase_slope(N, K[0], K[-1]), rel=1e-5)
+
+
+def test_offsets_and_amplitudes_that_are_linear_in_k_move_no_fitted_phase() -> None:
+    uneven = K + 0.05 * np.sin(np.linspace(0, np.pi, K.size))
+    u, middle = uneven - uneven.mean(), (K[0] + K[-1]) / 2
+    turn = 2 * N * 1.3 * (uneven - middle) + 0.7
+    spectrum = 3 + 0.2 * u + (1 + 0.1 * u) * np.cos(turn)
+    found = series_phases(spectrum[np.newaxis], uneven, 1.3 * N, FITTED)
+    assert found == pytest.approx([0.7], abs=1e-9)
+
+
+def test_the_held_component_is_the_strongest_of_all_spectra_together() -> None:
+    spectra = ideal_spectra(N, np.array([1.1, 1.9, 1.9]), K)
+    components = fourier_components(spectra, Config().processing)
+    strongest = np.abs(components[:, 1:]).argmax(axis=1) + 1
+    assert strongest[0] != strongest[1] == strongest[2]
+    found = series_phases(spectra, K, 1.9 * N, Config().processing)
+    assert found == pytest.approx(np.angle(components[:, strongest[1]]))
+
+
+BEND, LEAN, LAW = 3.0, -2.0, 0.58
+
+
+TABLE = np.linspace(1, 2, 8)
+
+
+def plates(config: Config) -> Callable[[float, float], tuple[Array, float, int]]:
+    """Make spectra whose phase is a formula, in an instrument's place.
+
+    A cosine over the wavenumbers as they are believed to be, of the frequency that the estimator
+    holds, with the phase 2nd k_m + BEND d² + LEAN z at the middle k_m of the band as it is.
+    """
+    k, n = wavenumbers(config.spectrum), config.scene.refractive_index.neuron
+
+    def at(diameter: float, focus: float) -> tuple[Array, float, int]:
+        held = TABLE[np.abs(TABLE - diameter).argmin()]
+        phase = n * diameter * (k[0] + k[-1]) + BEND * diameter**2 + LEAN * focus
+        return 2 + np.cos(2 * N * held * (K - (K[0] + K[-1]) / 2) + phase), 1e-12, 0
+
+    return at
+
+
+def asked(**overlay: object) -> Config:
+    return load_config(
+        {"sweep": {"focus": {"slope": LAW, "intercept": "66 nm"}}}, {"calibration": overlay}
+    )
+
+
+def test_plates_have_the_slopes_and_sensitivities_of_their_formula(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(calibrate, "spectrometer", plates)
+    config = asked(diameters={"num": 8})
+    table = calibration(config)
+    d, middle = table["diameter"].values, (K[0] + K[-1]) / 2
+    held = 2 * N * middle + 2 * BEND * d
+    assert table["fixed_focus_phase_slope"].values == pytest.approx(held, rel=1e-6)
+    assert table["diameter_per_phase"].values == pytest.approx(1 / held, rel=1e-6)
+    assert table["focus_phase_slope"].values == pytest.approx(LEAN, rel=1e-6)
+    assert table["following_phase_slope"].values == pytest.approx(held + LAW * LEAN, rel=1e-6)
+    assert table["phase_curvature"].values == pytest.approx(2 * BEND / 1e3, rel=1e-6)
+    band = config.spectrum.wavelength
+    expected = {
+        "diameter": 2 * BEND / 1e3,
+        "neuron": 2 * middle,
+        "wavelength_min": -N * 2 * np.pi / band.min**2 / 1e3,
+        "wavelength_max": -N * 2 * np.pi / band.max**2 / 1e3,
+    }
+    for name in PARAMETERS:
+        found = table[f"{name}_sensitivity"].values
+        assert found == pytest.approx(expected.get(name, 0.0), rel=1e-6, abs=1e-7), name
+    assert (table["budget_error"] < 1e-6).all()
+
+
+def test_the_standard_error_is_the_budgets_quadrature(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(calibrate, "spectrometer", plates)
+    none = dict.fromkeys(("diameter", "gap", "focus", "detector_radius"), "0 nm")
+    none |= {"wavelength_min": "0 nm", "wavelength_max": "0 nm"}
+    zero = {"glass": 0.0, "water": 0.0, "numerical_aperture": 0.0}
+    only = asked(diameters={"num": 8}, tolerances={**none, **zero, "neuron": 0.01})
+    table = calibration(only)
+    error = table["fixed_focus_phase_slope_standard_error"].values
+    assert error == pytest.approx(0.01 * (K[0] + K[-1]), rel=1e-6)
+    both = calibration(
+        asked(diameters={"num": 8}, tolerances={**none, **zero, "neuron": 0.01, "diameter": "1 um"})
+    )
+    whole = both["fixed_focus_phase_slope_standard_error"].values
+    assert whole == pytest.approx(np.hypot(error, 2 * BEND), rel=1e-6)
+
+
+def test_the_slopes_of_the_neuron_obey_the_chain_rule(calibrated: xr.Dataset) -> None:
+    chained = (
+        calibrated["fixed_focus_phase_slope"]
+        + calibrated["focus_phase_slope"] * calibrated["slope"]
+    )
+    assert chained.values == pytest.approx(calibrated["following_phase_slope"].values, abs=1e-5)
+    # by some 3 to 8 %: not the same calibration
+    ratio = calibrated["fixed_focus_phase_slope"] / calibrated["following_phase_slope"]
+    assert (ratio > 1.02).all()
+    assert (calibrated["difference_error"] < 1e-4).all()
+
+
+def test_the_slope_is_what_the_two_sides_do_by_themselves(calibrated: xr.Dataset) -> None:
+    apart = calibrated["far_side_phase_slope"] - calibrated["near_side_phase_slope"]
+    slope = calibrated["fixed_focus_phase_slope"]
+    assert apart.values == pytest.approx(slope.values, rel=0.01)
+    # the side that stays where it is moves its phase too, unlike that of a plate
+    assert (calibrated["near_side_phase_slope"] < -0.3).all()
+
+
+def test_the_light_of_a_plates_side_has_the_phase_of_its_path() -> None:
+    def trace_at(diameter: float, focus: float) -> Light:  # noqa: ARG001
+        # PT CR PT twice, and PT CT CR CT PT
+        lengths = np.array([1.0, 1.0, 1.0 + 2 * N * diameter])
+        codes = np.array([89, 89, 1517])
+        ones = np.ones(3)
+        return Light(codes, ones, ones, lengths, 0.0, 3, AccuracyStatus.REACHED)
+
+    assert [path_name(code) for code in (89, 1517)] == list(SIDES.values())
+    found = side_slopes(trace_at, 1.4, 0.8, 8.0, 1e-4)
+    assert found == pytest.approx({"near": 0.0, "far": 16 * N})
+    assert path_field(trace_at(1.4, 0.8), "PR", 8.0) == 0
+
+
+def test_many_counted_rays_and_a_larger_step_give_the_same_slope(calibrated: xr.Dataset) -> None:
+    one = calibrated.isel(diameter=3)
+    diameter, focus, step = float(one["diameter"]), float(one["focus"]), 3e-3
+    rays = by_rays(load_config(), 200_000)
+    trace_at, sum_light = tracer(rays), summer(rays)
+    spectra = [sum_light(trace_at(diameter + by, focus))[0] for by in (-step, step)]
+    u = K - K.mean()
+    cos, sin = np.cos(2 * N * diameter * u), np.sin(2 * N * diameter * u)
+    terms = np.stack((cos, sin, u * cos, u * sin, np.ones_like(u), u), axis=1)
+    fitted = np.linalg.lstsq(terms, np.stack(spectra, axis=1), rcond=None)[0]
+    before, after = np.arctan2(-fitted[1], fitted[0])
+    slope = np.angle(np.exp(1j * (after - before))) / (2 * step)
+    assert slope == pytest.approx(float(one["fixed_focus_phase_slope"]), abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("name", "change"), [("gap", 2e-3), ("neuron", 2e-3), ("detector_radius", 2e-3)]
+)
+def test_a_sensitivity_is_what_another_calibration_finds(
+    calibrated: xr.Dataset, name: str, change: float
+) -> None:
+    one = calibrated.isel(diameter=2)
+    diameter, focus, step = float(one["diameter"]), float(one["focus"]), 1e-3
+    slopes = []
+    for by in (-change, change):
+        look = spectrometer(moved(calibrate.converged(Config()), {name: by}, 0.0).config)
+        spectra = np.stack([look(diameter + side, focus)[0] for side in (-step, step)])
+        before, after = series_phases(spectra, K, N * diameter, FITTED)
+        slopes.append(wrapped(after - before) / (2 * step))
+    per = 1.0 if name in calibrate.INDICES else 1e3
+    found = float(one[f"{name}_sensitivity"]) * per
+    assert (slopes[1] - slopes[0]) / (2 * change) == pytest.approx(found, rel=0.02)
+
+
+def test_the_finite_differences_of_the_budget_agree(calibrated: xr.Dataset) -> None:
+    error = calibrated["fixed_focus_phase_slope_standard_error"]
+    assert (calibrated["budget_error"] < 0.01 * error).all()
+    assert (calibrated["accuracy_status"] == 0).all()
+    assert (calibrated["intensity_error"] <= calibrate.ACCURACY).all()
+
+
+def test_small_steps_need_more_than_the_thesiss_rays(calibrated: xr.Dataset) -> None:
+    off = calibrated["rays_phase_slope"] - calibrated["fixed_focus_phase_slope"]
+    assert float(np.abs(off).max()) > 0.05
+    assert float(np.sqrt((off**2).mean())) < 0.5
+
+
+def test_an_interpolation_is_better_than_its_error_says() -> None:
+    diameter = np.linspace(1, 2, 21)
+
+    def slope(at: Array) -> Array:
+        curve: Array = 24 - at + 0.05 * np.sin(15 * at)
+        return curve
+
+    stated = interpolation_error(diameter, slope(diameter))
+    between = (diameter[1:] + diameter[:-1]) / 2
+    off = np.abs(CubicSpline(diameter, slope(diameter))(between) - slope(between))
+    assert (off <= np.maximum(stated[1:], stated[:-1])).all()
+    assert stated.max() < 0.01
+
+
+def test_parameters_move_alone_and_only_where_they_can() -> None:
+    config = calibrate.converged(load_config({"scene": {"gap": "0 nm"}}))
+    for name in PARAMETERS:
+        for by in offsets_of(config, name).tolist():
+            place = moved(config, {name: by}, LAW)
+            if name in ("diameter", "focus"):
+                assert place.config == config
+                assert (place.diameter, place.focus) == (
+                    (by, LAW * by) if name == "diameter" else (0.0, by)
+                )
+            else:
+                assert value_of(place.config, name) == pytest.approx(value_of(config, name) + by)
+                for other in set(PARAMETERS) - {name}:
+                    assert value_of(place.config, other) == value_of(config, other)
+    assert min(offsets_of(config, "gap")) == 0
+
+
+def test_what_is_drawn_scatters_by_the_tolerances() -> None:
+    generator = np.random.default_rng(3)
+    places = [drawn(Config(), generator, LAW) for _ in range(300)]
+    tolerances = Config().calibration.tolerances
+    for name in ("gap", "neuron", "wavelength_min", "detector_radius"):
+        spread = np.std([value_of(place.config, name) for place in places])
+        assert spread == pytest.approx(getattr(tolerances, name), rel=0.15), name
+    following = [place.focus - LAW * place.diameter for place in places]
+    assert np.std(following) == pytest.approx(tolerances.focus, rel=0.15)
+
+
+def test_the_table_explains_itself_is_read_back_and_drawn(
+    calibrated: xr.Dataset, tmp_path: Path
+) -> None:
+    for name, variable in calibrated.variables.items():
+        assert variable.attrs["units"], name
+        assert variable.attrs["long_name"], name
+    write(calibrated, tmp_path / "calibration.nc")
+    config = load_config(
+        {"sweep": {"focus": {"slope": 0.58, "intercept": "66 nm"}}},
+        {"calibration": {"diameters": {"num": 11}}},
+    )
+    stored = read(tmp_path / "calibration.nc", "calibration", config)
+    assert "tolerances.focus" in summary(stored)
+    with pytest.raises(DatasetError, match=r"scene differ"):
+        read(
+            tmp_path / "calibration.nc",
+            "calibration",
+            changed(config, {"scene": {"gap": "6 nm"}}),
+        )
+    with look():
+        save(calibration_figure(stored), tmp_path / "calibration.png")
+
+
+def test_a_law_that_is_needed_is_asked_for() -> None:
+    with pytest.raises(OctsimError, match=r"sweep.focus: 'law' given"):
+        calibration(load_config())
+
+
+@pytest.mark.parametrize("aperture", [1.5, 1.51])
+def test_an_instrument_near_its_limits_is_drawn_within_them(aperture: float) -> None:
+    config = load_config({"objective": {"numerical_aperture": aperture}})
+    generator = np.random.default_rng(1)
+    for _ in range(300):
+        place = drawn(config, generator, 0.58)
+        glass = place.config.scene.refractive_index.glass
+        assert place.config.objective.numerical_aperture < glass

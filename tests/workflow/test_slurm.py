@@ -1,0 +1,207 @@
+"""A run on a cluster: jobs that fail in each way are tried again, and the bits are the same.
+
+`make test-slurm` runs these on a private Slurm of one node.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from checkout import GRID, TINY, Checkout, counts, merged
+from cluster import ClusterError, cluster
+
+pytestmark = pytest.mark.skipif(
+    "OCTSIM_SLURM" not in os.environ, reason="OCTSIM_SLURM is not set; run by `make test-slurm`"
+)
+# about what a job takes: the next looks at it come ten seconds later each
+SOON = ("--cores", "2", "--slurm-init-seconds-before-status-checks", "12")
+PROFILE = ("--workflow-profile", "profiles/slurm", *SOON)
+_PATIENCE = 180.0  # s
+
+
+@pytest.fixture(scope="module")
+def slurm() -> Iterator[Mapping[str, str]]:
+    try:
+        with cluster() as environment:
+            yield environment
+    except ClusterError as error:
+        pytest.skip(f"Slurm can't be started here: {error}")
+
+
+def at_start(checkout: Checkout, stage: str, statement: str) -> None:
+    """Make a stage's job do something before its work."""
+    script = checkout.folder / "workflow" / "scripts" / f"{stage}.py"
+    lines = script.read_text().splitlines(keepends=True)
+    (job,) = (number for number, line in enumerate(lines) if line.startswith("with job("))
+    lines.insert(job + 1, f"    import time; from pathlib import Path; {statement}\n")
+    script.write_text("".join(lines))
+
+
+def the_first_time(name: str, statement: str) -> str:
+    return f"[(Path('{name}').touch(), {statement}) for _ in 'x' if not Path('{name}').exists()]"
+
+
+def start(
+    checkout: Checkout,
+    slurm: Mapping[str, str],
+    *arguments: str,
+    overlay: Mapping[str, Any] = TINY,
+) -> subprocess.Popen[str]:
+    (checkout.folder / "mine.yaml").write_text(yaml.safe_dump(overlay), encoding="utf-8")
+    return subprocess.Popen(
+        [sys.executable, "-m", "snakemake", "--configfile", "mine.yaml", *arguments],
+        cwd=checkout.folder, env=slurm, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    )  # fmt: skip
+
+
+def run(checkout: Checkout, slurm: Mapping[str, str], *arguments: str) -> str:
+    said, _ = (started := start(checkout, slurm, *arguments)).communicate()
+    assert started.returncode == 0, said
+    return said
+
+
+def state_of(slurm: Mapping[str, str], job: str) -> str:
+    command = ["squeue", "--states=all", "--noheader", f"--jobs={job}", "--format=%T"]
+    done = subprocess.run(command, env=slurm, capture_output=True, text=True, check=True)
+    return done.stdout.strip()
+
+
+def caught(checkout: Checkout, slurm: Mapping[str, str], *files: str) -> str:
+    """Give the number of the job that runs alone, once files are made."""
+    command = ["squeue", "--noheader", "--states=RUNNING,COMPLETING", "--format=%i"]
+    until = time.monotonic() + _PATIENCE
+    while time.monotonic() < until:
+        done = subprocess.run(command, env=slurm, capture_output=True, text=True, check=True)
+        running = done.stdout.split()
+        if len(running) == 1 and all((checkout.folder / file).exists() for file in files):
+            return running[0]
+        time.sleep(0.1)
+    raise AssertionError(f"no job ran alone with {', '.join(files)} made")
+
+
+@pytest.fixture(scope="module")
+def local(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    found = []
+    for cores in ("1", "2"):
+        checkout = Checkout(tmp_path_factory.mktemp(f"cores{cores}"))
+        checkout.run(TINY, "--cores", cores)
+        found.append(checkout.results())
+    assert found[0] == found[1]
+    return found[0]
+
+
+@pytest.fixture(scope="module")
+def troubled(
+    slurm: Mapping[str, str], tmp_path_factory: pytest.TempPathFactory
+) -> tuple[Checkout, str]:
+    """Give a whole run in which three jobs end as jobs do on clusters, and what it said."""
+    checkout = Checkout(tmp_path_factory.mktemp("troubled"))
+    # more than it asks for at first, less than it asks for then; Slurm looks once a second
+    at_start(checkout, "focus_scan", "held = b'x' * 1_500_000_000; time.sleep(3); del held")
+    at_start(checkout, "focus_sweep", the_first_time("failed", "1 / 0"))
+    at_start(checkout, "detections", the_first_time("waits", "time.sleep(300)"))
+    started = start(checkout, slurm, *PROFILE)
+    subprocess.run(["scancel", caught(checkout, slurm, "waits")], env=slurm, check=True)
+    said, _ = started.communicate()
+    assert started.returncode == 0, said
+    return checkout, said
+
+
+def slurm_logs(checkout: Checkout, stage: str) -> list[str]:
+    """Give what Slurm kept of a stage's jobs: of those that failed."""
+    logs = checkout.folder / ".snakemake" / "slurm_logs" / f"rule_{stage}"
+    return [file.read_text() for file in sorted(logs.rglob("*.log"))]
+
+
+def test_a_run_on_slurm_has_the_bits_of_a_local_one_on_one_core_and_on_two(
+    troubled: tuple[Checkout, str], local: dict[str, bytes]
+) -> None:
+    assert troubled[0].results() == local
+
+
+@pytest.mark.parametrize(
+    ("stage", "said", "state"),
+    [
+        ("focus_sweep", "ZeroDivisionError", "FAILED"),
+        ("focus_scan", "exceeded memory limit", "FAILED"),
+        ("detections", "CANCELLED", "CANCELLED"),
+    ],
+)
+def test_a_job_that_fails_or_lacks_memory_or_is_cancelled_is_tried_again(
+    stage: str, said: str, state: str, troubled: tuple[Checkout, str]
+) -> None:
+    checkout, told = troubled
+    (log,) = slurm_logs(checkout, stage)
+    assert said in log
+    assert told.count(f"/rule_{stage}/") >= 2  # submitted twice
+    assert f"SLURM status is: '{state}'" in told
+    assert told.count("Trying to restart job") == 3
+
+
+def test_a_job_that_fails_each_time_keeps_the_old_dataset_and_a_rerun_resumes(
+    slurm: Mapping[str, str], local: dict[str, bytes], tmp_path: Path
+) -> None:
+    checkout = Checkout(tmp_path)
+    checkout.run(TINY, "--until", "focus_law")
+    before = checkout.results()
+    script = tmp_path / "workflow" / "scripts" / "focus_law.py"
+    plain = script.read_text()
+    at_start(checkout, "focus_law", "raise SystemExit(1)")
+    broken = start(checkout, slurm, *PROFILE, "--until", "focus_law", "--restart-times", "0")
+    said, _ = broken.communicate()
+    assert broken.returncode != 0
+    assert "SLURM status is: 'FAILED'" in said
+    assert checkout.results() == before
+    script.write_text(plain)
+    assert "focus_law" in checkout.would_run(TINY)  # what failed does not count as done
+    checkout.run(TINY, "--until", "focus_law")
+    assert checkout.results() == {name: local[name] for name in before}
+
+
+def test_a_scattered_stage_is_gathered_to_the_bits_of_one_job_whatever_becomes_of_a_share(
+    slurm: Mapping[str, str], tmp_path: Path
+) -> None:
+    target = "results/grid/detections.nc"
+    for name in ("here", "there"):
+        (tmp_path / name).mkdir()
+    here, there = Checkout(tmp_path / "here"), Checkout(tmp_path / "there")
+    alone = merged(GRID, {"cache": {"gigabytes": 0}})  # a node's cache outlives these tests
+    here.run(alone, "--cores", "2", target)
+    second = "snakemake.wildcards.get('number') == '2' and not Path('waits').exists()"
+    at_start(
+        there, "detections",
+        f"[(Path('waits').touch(), time.sleep(300)) for _ in 'x' if {second}]",
+    )  # fmt: skip
+    scattered = merged(alone, {"scatter": {"minutes": 4.6e-5}})
+    started = start(there, slurm, *PROFILE, target, overlay=scattered)
+    waiting = caught(there, slurm, "waits", "results/grid/shares/detections-1-of-2.npz")
+    subprocess.run(["scancel", waiting], env=slurm, check=True)
+    said, _ = started.communicate()
+    assert started.returncode == 0, said
+    assert said.count("has been submitted with SLURM jobid") == 4  # one share of two again
+    assert there.results() == here.results()
+    assert counts(there, "grid") == counts(here, "grid")
+
+
+def test_a_killed_run_s_job_ends_with_the_next_run_which_has_the_same_bits(
+    slurm: Mapping[str, str], local: dict[str, bytes], tmp_path: Path
+) -> None:
+    checkout = Checkout(tmp_path)
+    at_start(checkout, "focus_scan", the_first_time("waits", "time.sleep(300)"))
+    arguments = ("--profile", "profiles/slurm", *SOON, "--until", "focus_scan")
+    killed = start(checkout, slurm, *arguments)
+    orphan = caught(checkout, slurm, "waits")
+    killed.send_signal(signal.SIGKILL)
+    killed.communicate()
+    assert state_of(slurm, orphan) == "RUNNING"
+    run(checkout, slurm, *arguments)
+    assert state_of(slurm, orphan) == "FAILED"
+    assert checkout.results() == {"tiny/focus_scan.nc": local["tiny/focus_scan.nc"]}

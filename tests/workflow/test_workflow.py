@@ -1,0 +1,474 @@
+"""The workflow: a run from nothing, what an edit reruns, what is refused, what survives."""
+
+import json
+import os
+import shutil
+import sqlite3
+import subprocess
+import sys
+import zipfile
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+import yaml
+from checkout import GIVEN, GRID, ROOT, TINY, Checkout, counts, merged
+
+from octsim.config.messages import known_keys
+from octsim.config.models import Config
+
+STAGES = [
+    "focus_scan", "focus_sweep", "gaussian_fits", "focus_law", "detections", "spectra", "paths",
+    "fourier", "phase_slope",
+]  # fmt: skip
+FIGURES = [*(f"figure_{number}" for number in (1, 6, 7, 8, 9, 10, 11, 12)), "paths"]
+
+
+@pytest.fixture(scope="module")
+def law(tmp_path_factory: pytest.TempPathFactory) -> Checkout:
+    checkout = Checkout(tmp_path_factory.mktemp("law"))
+    checkout.run(TINY)
+    return checkout
+
+
+@pytest.fixture(scope="module")
+def given(tmp_path_factory: pytest.TempPathFactory) -> Checkout:
+    checkout = Checkout(tmp_path_factory.mktemp("given"))
+    checkout.run(merged(TINY, GIVEN))
+    return checkout
+
+
+def test_a_run_leaves_every_dataset_figure_log_and_benchmark(law: Checkout) -> None:
+    folder = law.folder / "results" / "tiny"
+    for stage in STAGES:
+        with xr.open_dataset(folder / f"{stage}.nc") as dataset:
+            assert dataset.attrs["stage"] == stage
+    for figure in FIGURES:
+        for form in ("png", "svg"):
+            assert (folder / "figures" / f"{figure}.{form}").stat().st_size > 1000
+    for stage, points in {"focus_scan": 5, "focus_sweep": 27, "detections": 9}.items():
+        counts = json.loads((folder / "logs" / f"{stage}.json").read_text())
+        assert sum(counts.values()) == points
+        assert set(counts) == {"points_traced", "points_from_cache"}
+        assert (folder / "benchmarks" / f"{stage}.tsv").exists()
+        assert (folder / "logs" / f"{stage}.log").exists()
+
+
+def test_a_second_run_does_nothing(law: Checkout) -> None:
+    assert law.would_run(TINY) == set()
+
+
+def test_the_same_config_in_other_units_and_order_reruns_nothing(law: Checkout) -> None:
+    other = merged(TINY, {"scene": {"gap": "0.005 um"}, "objective": {"magnification": 20.0}})
+    assert law.would_run(dict(reversed(other.items()))) == set()
+
+
+EVERYTHING = {
+    "focus_scan", "focus_sweep", "focus_law", "detections", "spectra", "phase_slope", "figures",
+}  # fmt: skip
+FITTED = EVERYTHING - {"focus_scan"}
+SWEPT = {"detections", "spectra", "phase_slope", "figures"}
+PROCESSED = {"phase_slope", "figures"}
+# key: (edited value, what reruns under the fitted law, what reruns with a given focus)
+EDITS: dict[str, tuple[Any, set[str], set[str]]] = {
+    "run": ("other", EVERYTHING, EVERYTHING),
+    "scene.refractive_index.glass": (1.53, EVERYTHING, EVERYTHING),
+    "scene.refractive_index.water": (1.34, EVERYTHING, EVERYTHING),
+    "scene.refractive_index.neuron": (1.38, EVERYTHING, EVERYTHING),
+    "scene.gap": ("6 nm", EVERYTHING, EVERYTHING),
+    "objective.numerical_aperture": (1.1, EVERYTHING, EVERYTHING),
+    "objective.focus_distance": ("310 um", EVERYTHING, EVERYTHING),
+    "objective.magnification": (21, EVERYTHING, EVERYTHING),
+    "detector.core_diameter": ("4 um", EVERYTHING, EVERYTHING),
+    "tracing.scheme": ("paths", EVERYTHING, EVERYTHING),
+    "tracing.accuracy": (1e-3, set(), set()),  # of the scheme paths
+    "tracing.rays": (201, EVERYTHING, EVERYTHING),
+    "tracing.max_intersections": (10, EVERYTHING, EVERYTHING),
+    "tracing.min_amplitude": (1e-4, EVERYTHING, EVERYTHING),
+    "spectrum.wavelength.min": ("660 nm", EVERYTHING, EVERYTHING - {"detections"}),
+    "spectrum.wavelength.max": ("890 nm", EVERYTHING, EVERYTHING - {"detections"}),
+    "spectrum.samples": (999, EVERYTHING, EVERYTHING - {"detections"}),
+    "focus_scan.diameter": ("2.1 um", {"focus_scan", "figures"}, {"focus_scan", "figures"}),
+    "focus_scan.focus": ({"num": 6}, {"focus_scan", "figures"}, {"focus_scan", "figures"}),
+    "focus_law.diameters": ({"num": 4}, FITTED, {"focus_sweep", "focus_law", "figures"}),
+    "focus_law.fraction": ({"num": 10}, FITTED, {"focus_sweep", "focus_law", "figures"}),
+    "sweep.diameters": ({"num": 10}, SWEPT, SWEPT),
+    "sweep.focus": ({"slope": 0.5, "intercept": "0.1 um"}, SWEPT, SWEPT),
+    "grid.combine": ("zip", set(), set()),
+    "cache.file": ("other.sqlite", set(), set()),
+    "cache.gigabytes": (1, set(), set()),
+    "budget.cpu_hours": (2, set(), set()),
+    "budget.disk_gigabytes": (21, set(), set()),
+    "scatter.minutes": (1e-5, set(), set()),
+    "processing.estimator": ("sinusoid", PROCESSED, PROCESSED),
+    "processing.centre": ("mean", PROCESSED, PROCESSED),
+    "processing.centre_degree": (2, PROCESSED, PROCESSED),
+    "processing.window": (["kaiser", 4.0], PROCESSED, PROCESSED),
+    "processing.depth": ("peak", PROCESSED, PROCESSED),
+    "processing.read_noise": (2.0, PROCESSED, PROCESSED),
+    "processing.sinusoid.offset_degree": (2, PROCESSED, PROCESSED),
+    "processing.sinusoid.amplitude_degree": (2, PROCESSED, PROCESSED),
+    "processing.sinusoid.depth": ("fitted", PROCESSED, PROCESSED),
+    "processing.sinusoid.weights": ("shot", PROCESSED, PROCESSED),
+    "processing.sinusoid.envelope": ("common", PROCESSED, PROCESSED),
+    "processing.hilbert.band": (0.4, PROCESSED, PROCESSED),
+    "processing.esprit.poles": (5, PROCESSED, PROCESSED),
+}
+# of targets that are no part of a run
+OTHERS: dict[str, Any] = {
+    "calibration": {
+        "diameters": {"num": 9},
+        "step": "0.2 nm",
+        "estimator": "fft",
+        "tolerances": {
+            "diameter": "1 nm",
+            "gap": "1 nm",
+            "glass": 0.01,
+            "water": 0.01,
+            "neuron": 0.01,
+            "focus": "1 nm",
+            "numerical_aperture": 0.1,
+            "detector_radius": "1 nm",
+            "wavelength_min": "1 nm",
+            "wavelength_max": "1 nm",
+        },
+    },
+    "expansion": {"series": "phases.csv", "diameter": "1.5 um", "rest": 5},
+    "action_potential": {"diameter": "1.5 um", "expansion": "2 nm", "photons": 1e9, "seed": 2},
+    "archive": {
+        "title": "Ours",
+        "description": "Of ours.",
+        "creators": [{"name": "Ada Ray"}],
+        "license": "MIT",
+        "date": "2026-01-31",
+    },
+}
+
+
+def keys_in(part: Any, prefix: str = "") -> set[str]:
+    """Give the dotted keys of an overlay, ranges as one."""
+    if not isinstance(part, dict) or "num" in part:
+        return {prefix.rstrip(".")}
+    return {key for name, value in part.items() for key in keys_in(value, f"{prefix}{name}.")}
+
+
+def test_every_key_is_edited_below() -> None:
+    part: Any
+    leaves = set()
+    for key in known_keys():
+        part = Config().to_dict()
+        for name in key.split("."):
+            part = part.get(name) if isinstance(part, dict) else None
+        is_range = isinstance(part, dict) and "num" in part
+        if is_range or (part is not None and not isinstance(part, dict)):
+            leaves.add(key)
+    ends = {f"{key}.{end}" for key in leaves for end in ("start", "stop", "num")}
+    optional = {"expansion.series", "archive.title", "archive.description", "archive.date"}
+    assert leaves - ends == set(EDITS) | keys_in(OTHERS) - optional
+
+
+def test_keys_of_other_targets_rerun_nothing_of_a_run(law: Checkout, given: Checkout) -> None:
+    assert law.would_run(merged(TINY, OTHERS)) == set()
+    assert given.would_run(merged(TINY, GIVEN, OTHERS)) == set()
+
+
+@pytest.mark.parametrize("key", EDITS)
+def test_an_edit_reruns_only_what_reads_the_key(key: str, law: Checkout, given: Checkout) -> None:
+    value, with_law, with_focus = EDITS[key]
+    edit: Any = value
+    for name in reversed(key.split(".")):
+        edit = {name: edit}
+    if value is None:
+        edit = {}
+    assert law.would_run(merged(TINY, edit)) == with_law
+    assert given.would_run(merged(TINY, GIVEN, edit)) == with_focus
+
+
+def test_comments_and_formatting_of_the_sources_rerun_nothing(tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    checkout.run(TINY, "--until", "focus_law")
+    script = tmp_path / "workflow" / "scripts" / "focus_law.py"
+    script.write_text("# a comment\n" + script.read_text().replace("config, fits", "config,  fits"))
+    untouched = {"focus_scan", "detections", "spectra", "phase_slope", "figures"}
+    assert checkout.would_run(TINY) == untouched
+    script.write_text(script.read_text() + "\nprint('more')\n")
+    assert checkout.would_run(TINY) == untouched | {"focus_law"}
+
+
+@pytest.mark.parametrize(
+    ("overlay", "message"),
+    [
+        ({"objective": {"na": 1}}, "octsim: objective.na: unknown key; the nearest known one is"),
+        ({"scene": {"gap": 5}}, "octsim: scene.gap: 5 given; a length needs its unit"),
+        ({"run": "../up"}, "octsim: run: '../up' given; it should be a plain name"),
+    ],
+)
+def test_a_bad_config_is_one_line_and_touches_nothing(
+    overlay: dict[str, Any], message: str, tmp_path: Path
+) -> None:
+    done = Checkout(tmp_path).snakemake(overlay)
+    assert done.returncode != 0
+    said = [line for line in done.stderr.splitlines() if "profile" not in line]
+    assert len(said) == 1
+    assert said[0].startswith(message)
+    assert "Traceback" not in done.stdout + done.stderr
+    assert not (tmp_path / "results").exists()
+
+
+def test_a_key_that_stands_twice_is_refused(tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    (tmp_path / "twice.yaml").write_text("scene: {gap: 1 nm}\nscene: {gap: 2 nm}\n")
+    done = checkout.snakemake(TINY, "--configfile", "twice.yaml")
+    assert done.returncode != 0
+    assert "the key 'scene' stands twice" in done.stderr
+
+
+def test_a_failed_stage_keeps_the_old_dataset_and_runs_again(tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    checkout.run(TINY)
+    before = checkout.results()["tiny/detections.nc"]
+    no_law = merged(TINY, {"focus_law": {"fraction": {"stop": 0.42}}})
+    for _ in range(2):  # the second time too: nothing that failed counts as done
+        done = checkout.snakemake(no_law)
+        assert done.returncode != 0
+        assert "octsim: sweep.focus: 'law' given, but there is no law" in done.stderr
+        assert "Traceback" not in done.stderr
+        assert checkout.results()["tiny/detections.nc"] == before
+    checkout.run(TINY)
+    assert checkout.results()["tiny/detections.nc"] == before
+
+
+def test_a_diameter_step_that_aliases_is_warned_of_once(tmp_path: Path) -> None:
+    coarse = merged(TINY, {"sweep": {"diameters": {"num": 5}}})
+    done = Checkout(tmp_path).snakemake(coarse, "--dry-run")
+    assert done.returncode == 0
+    assert done.stderr.count("octsim: warning: sweep.diameters: a step of 0.25 um") == 1
+
+
+def test_a_dataset_is_made_again_by_the_command_that_it_records(
+    law: Checkout, tmp_path: Path
+) -> None:
+    checkout = Checkout(tmp_path)
+    with xr.open_dataset(law.folder / "results" / "tiny" / "focus_law.nc") as dataset:
+        (tmp_path / "config.json").write_text(dataset.attrs["config"])
+        command = dataset.attrs["creation_command"].split("then: ")[1]
+    arguments = command.removeprefix(".venv/bin/snakemake").split()
+    done = subprocess.run(
+        [sys.executable, "-m", "snakemake", *arguments],
+        cwd=tmp_path,
+        capture_output=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    again = checkout.results()
+    assert again == {name: law.results()[name] for name in again}
+    assert set(again) == {"tiny/focus_sweep.nc", "tiny/gaussian_fits.nc", "tiny/focus_law.nc"}
+
+
+def test_every_run_has_its_own_folder_and_the_same_bits(law: Checkout, tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    checkout.run(TINY, "--cores", "1")
+    assert checkout.results() == law.results()
+
+
+def test_an_archive_is_packed_when_something_of_it_has_changed(law: Checkout) -> None:
+    def archived(overlay: dict[str, Any]) -> str:
+        done = law.snakemake(overlay, "--cores", "2", "archive")
+        assert done.returncode == 0, done.stderr
+        return done.stderr
+
+    def would_run(overlay: dict[str, Any]) -> bool:
+        done = law.snakemake(overlay, "--dry-run", "archive")
+        assert done.returncode == 0, done.stderr
+        return "Nothing to be done" not in done.stdout + done.stderr
+
+    file = law.folder / "results" / "tiny" / "tiny.zip"
+    before = law.results()
+    assert "octsim: warning: archive.date: not given" in archived(TINY)
+    with zipfile.ZipFile(file) as zipped:
+        kept = {name: zipped.read(name) for name in zipped.namelist()}
+    for name, data in before.items():
+        assert kept[name.removeprefix("tiny/")] == data
+    first = file.read_bytes()
+    assert not would_run(TINY)
+    assert not would_run(merged(TINY, {"cache": {"gigabytes": 1}}))
+    about = merged(
+        TINY, {"archive": {"creators": [{"name": "Ada Ray"}], "date": date(2026, 1, 31)}}
+    )
+    assert would_run(about)
+    assert "octsim: warning: archive" not in archived(about)
+    assert law.results() == before
+    assert file.read_bytes() != first
+    archived(TINY)
+    assert file.read_bytes() == first
+
+
+def test_the_profile_of_a_cluster_cures_what_the_default_one_does() -> None:
+    default, slurm = (
+        yaml.safe_load((ROOT / "profiles" / name / "config.yaml").read_text())
+        for name in ("default", "slurm")
+    )
+    assert {key: slurm[key] for key in default if key != "cores"} == {
+        key: value for key, value in default.items() if key != "cores"
+    }
+
+
+def test_a_cache_file_s_unset_variable_is_refused_in_a_line(tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    done = checkout.snakemake(
+        merged(TINY, {"cache": {"file": "$OCTSIM_NOT_SET/points.sqlite"}}), "--until", "focus_scan"
+    )
+    assert done.returncode != 0
+    assert "octsim: cache.file: '$OCTSIM_NOT_SET/points.sqlite' given, but" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def as_a_job(folder: Path, file: str, **environment: str) -> str:
+    """Do what a cluster's job does on a node of 64 cores; give what it says."""
+    command = [
+        sys.executable, "-m", "snakemake", "--configfile", "mine.yaml", "--mode", "remote",
+        "--cores", "64", "--force", "--no-hooks", "--nolock", f"results/tiny/{file}",
+    ]  # fmt: skip
+    done = subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, check=False,
+        env={**os.environ, "OCTSIM_CORES": "4", **environment},
+    )  # fmt: skip
+    return done.stdout + done.stderr
+
+
+def test_a_job_of_a_run_that_another_has_followed_does_nothing(tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    checkout.run(TINY, "--until", "focus_scan")
+    file = tmp_path / "results" / "tiny" / "focus_scan.nc"
+    before = file.stat().st_mtime_ns
+    said = as_a_job(tmp_path, file.name, OCTSIM_RUN_ID="of an earlier run")
+    assert "octsim: this job's run has ended, and another of its name has begun" in said
+    assert file.stat().st_mtime_ns == before
+    as_a_job(tmp_path, file.name)
+    assert file.stat().st_mtime_ns > before
+
+
+def test_a_job_has_the_threads_that_its_run_counted(tmp_path: Path) -> None:
+    Checkout(tmp_path)
+    script = tmp_path / "workflow" / "scripts" / "detections.py"
+    script.write_text("import pathlib; pathlib.Path('threads').write_text(str(snakemake.threads))")
+    (tmp_path / "mine.yaml").write_text(yaml.safe_dump(merged(TINY, GIVEN)))
+    as_a_job(tmp_path, "detections.nc")
+    assert (tmp_path / "threads").read_text() == "4"
+
+
+@pytest.fixture(scope="module")
+def grid(tmp_path_factory: pytest.TempPathFactory) -> Checkout:
+    checkout = Checkout(tmp_path_factory.mktemp("grid"))
+    checkout.run(GRID)
+    return checkout
+
+
+def test_a_grid_gives_one_dataset_a_stage_with_its_keys_as_dimensions(grid: Checkout) -> None:
+    folder = grid.folder / "results" / "grid"
+    dimensions = {}
+    for stage in STAGES:
+        with xr.open_dataset(folder / f"{stage}.nc") as dataset:
+            dimensions[stage] = {d for d in dataset.dims if d in ("gap", "window")}
+    assert dimensions.pop("fourier") == dimensions.pop("phase_slope") == {"gap", "window"}
+    assert set(map(frozenset, dimensions.values())) == {frozenset({"gap"})}
+    figures = sorted(path.name for path in (folder / "figures").iterdir())
+    assert figures == ["figure_1.png", "figure_1.svg", "grid.png", "grid.svg"]
+    assert sum(counts(grid, "grid")["detections"].values()) == 18  # not once a window
+
+
+def test_an_edit_of_the_grid_reruns_only_what_has_the_key(grid: Checkout) -> None:
+    wider = merged(GRID, {"grid": {"processing.window": ["hann", "hamming", "boxcar"]}})
+    assert grid.would_run(wider) == {"phase_slope", "figures"}
+    rewritten = merged(
+        GRID, {"grid": {"scene.gap": {"start": "0.005 um", "stop": "20 nm", "num": 2}}}
+    )
+    assert grid.would_run(rewritten) == set()
+
+
+def test_an_estimate_is_printed_first_and_a_large_run_wants_to_be_confirmed(tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    large = merged(GRID, {"sweep": {"diameters": {"num": 1_000_000}}, "tracing": {"rays": 3000}})
+    done = checkout.snakemake(large)
+    assert done.returncode != 0
+    lines = [line for line in done.stderr.splitlines() if line.startswith("octsim: ")]
+    assert lines[0].startswith("octsim: 4 combinations, at most 2000064 points to trace")
+    assert "of processor time" in lines[0]
+    assert lines[1].startswith("octsim: budget.cpu_hours: 1 given, but this run takes about 1.")
+    assert not (tmp_path / "results").exists()
+    # what is asked for counts, and a dry run takes nothing
+    assert checkout.snakemake(large, "--dry-run").returncode == 0
+    checkout.run(large, "--until", "focus_law")
+
+
+def test_points_are_kept_for_other_runs_and_for_going_back(tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    start = merged(TINY, GIVEN)
+    checkout.run(start)
+    shutil.rmtree(tmp_path / "results")
+    shutil.rmtree(tmp_path / ".snakemake")
+    for overlay, traced in (
+        (start, 0),
+        (merged(start, {"run": "other"}), 0),
+        (merged(start, {"spectrum": {"wavelength": {"min": "700 nm"}}}), 0),
+        (merged(start, {"sweep": {"diameters": {"num": 17}}}), 8),
+        (merged(start, {"scene": {"gap": "6 nm"}}), 41),
+        (start, 0),
+    ):
+        checkout.run(overlay)
+        found = counts(checkout, overlay["run"])
+        assert sum(one["points_traced"] for one in found.values()) == traced
+        assert sum(sum(one.values()) for one in found.values()) == (49 if traced == 8 else 41)
+
+
+def test_no_result_depends_on_the_cache(law: Checkout, tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    without = merged(TINY, {"cache": {"gigabytes": 0}})
+    checkout.run(without)
+    assert checkout.results() == law.results()
+    assert not (tmp_path / ".octsim").exists()
+    assert {one["points_from_cache"] for one in counts(checkout, "tiny").values()} == {0}
+
+
+def test_a_scattered_run_is_the_same_bits_and_goes_on_from_its_shares(
+    grid: Checkout, tmp_path: Path
+) -> None:
+    checkout = Checkout(tmp_path)
+    scattered = merged(GRID, {"scatter": {"minutes": 4.6e-5}, "cache": {"gigabytes": 0}})
+    assert checkout.would_run(scattered) == EVERYTHING | {"share"}
+    share = "results/grid/shares/detections-2-of-2.npz"
+    checkout.run(scattered, "--notemp", share)
+    made = (tmp_path / share).stat()
+    checkout.run(scattered)
+    assert checkout.results() == grid.results()
+    assert counts(checkout, "grid") == counts(grid, "grid")
+    assert made.st_mtime < (tmp_path / "results/grid/detections.nc").stat().st_mtime
+    said = (tmp_path / "results" / "grid" / "logs" / "shares").glob("detections-*")
+    assert sorted(path.name for path in said) == ["detections-1-of-2.log", "detections-2-of-2.log"]
+    assert not list((tmp_path / "results" / "grid" / "shares").glob("*"))
+    # where a stage is cut decides nothing
+    assert checkout.would_run(scattered) == checkout.would_run(GRID) == set()
+
+
+@pytest.mark.parametrize("kind", ["foreign", "future"])
+def test_a_cache_that_is_none_is_refused_in_a_line_and_stays(kind: str, tmp_path: Path) -> None:
+    checkout, file = Checkout(tmp_path), tmp_path / ".octsim" / "points.sqlite"
+    if kind == "foreign":
+        file.parent.mkdir()
+        file.write_text("somebody's notes")
+    else:
+        checkout.run(TINY, "--until", "focus_scan")
+        with sqlite3.connect(file) as database:
+            database.execute("PRAGMA user_version = 99")
+        database.close()
+    before = file.read_bytes()
+    done = checkout.snakemake(merged(TINY, {"run": "next"}))
+    assert done.returncode != 0
+    said = [line for line in done.stderr.splitlines() if line.startswith("octsim: ")]
+    assert len(said) == 1
+    assert ".octsim/points.sqlite: " in said[0]
+    assert "Traceback" not in done.stderr
+    assert file.read_bytes() == before
+    assert not (tmp_path / "results" / "next").exists()
