@@ -10,10 +10,7 @@ from octsim.config.models import Config, FocusLine
 from octsim.config.rounding import rounding_remarks
 from octsim.config.units import format_length
 from octsim.optics.two_beams import aliasing_step
-
-STEEP = 0.92
-"""Numerical aperture over the index of water, above which the scheme paths can miss light."""
-
+from octsim.schemes.table import COUNTED_RAYS, SCHEMES
 
 _FINEST = 10 * 10.0**-DECIMALS
 
@@ -88,11 +85,12 @@ def impossible(config: Config) -> Iterator[str]:
 
 def _steep_remarks(config: Config) -> Iterator[str]:
     aperture, water = config.objective.numerical_aperture, config.scene.refractive_index.water
-    if config.tracing.scheme == "paths" and STEEP * water < aperture:
+    scheme = SCHEMES[config.tracing.scheme]
+    if scheme.steepest * water < aperture:
         yield (
-            f"tracing.scheme: 'paths' with a numerical aperture of {aperture}, above {STEEP} of "
-            f"the index of water, {water}: light near grazing incidence can be missed, and the "
-            "error with it; compare with 'vogel'"
+            f"tracing.scheme: {scheme.name!r} with a numerical aperture of {aperture}, above "
+            f"{scheme.steepest} of the index of water, {water}: light near grazing incidence can "
+            f"be missed, and the error with it; compare with {COUNTED_RAYS.name!r}"
         )
 
 

@@ -11,9 +11,10 @@ import yaml
 from octsim.base.errors import ConfigError
 from octsim.config.checks import plain_remarks
 from octsim.config.messages import known_keys
-from octsim.config.models import PRESETS, Config
+from octsim.config.models import Config
 from octsim.config.overlays import merge, preset
 from octsim.datasets.variables import MEANINGS
+from octsim.schemes.table import PRESETS
 
 FIXED = (
     "run", "calibration", "expansion", "action_potential", "grid", "archive", "cache", "budget",
@@ -21,6 +22,7 @@ FIXED = (
 )  # fmt: skip
 """Sections that a run has once: what no stage over the grid depends on."""
 _PRESET = "tracing.preset"
+_SET_BY_PRESETS = sorted({f"tracing.{name}" for set_ in PRESETS.values() for name in set_})
 _NUMBERS = re.compile(r"[-+]?[0-9][0-9.e+-]*")
 
 
@@ -73,7 +75,7 @@ def overlap(one: str, other: str) -> bool:
 def bears_on(key: str, *read: str) -> bool:
     """Tell whether a varied key sets any of some others, or parts of them."""
     # a preset stands for other keys
-    sets = (key, *(f"tracing.{name}" for name in PRESETS["draft"])) if key == _PRESET else (key,)
+    sets = (key, *_SET_BY_PRESETS) if key == _PRESET else (key,)
     return any(overlap(one, other) for one in sets for other in read)
 
 

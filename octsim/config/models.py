@@ -5,7 +5,7 @@ The models are the one source: `config/schema.json` and `docs/config.md` are gen
 """
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,8 @@ from octsim.config.fields import (
 from octsim.config.fields import key as _key
 from octsim.config.processing import Processing as Processing
 from octsim.config.units import Length
+from octsim.optics.band import wavenumbers
+from octsim.schemes.table import COUNTED_RAYS, PRESETS, SCHEMES
 
 
 class RefractiveIndex(Section):
@@ -65,22 +67,20 @@ class DetectorConfig(Section):
     )
 
 
-PRESETS: Mapping[str, Mapping[str, Any]] = {
-    "draft": {"scheme": "paths", "accuracy": 3e-2},
-    "standard": {"scheme": "paths", "accuracy": 1e-4},
-    "reference": {"scheme": "paths", "accuracy": 1e-8},
-}
-"""Points of the trade of cost for accuracy: `snakemake tradeoff` measures them."""
+if TYPE_CHECKING:
+    SchemeName = PresetName = str
+else:  # a scheme is a row of the table, and nothing more to be listed here
+    SchemeName, PresetName = Literal[tuple(SCHEMES)], Literal[tuple(PRESETS)]
 
 
 class Tracing(Section):
     """How rays are placed and how far each is followed."""
 
-    preset: Literal["draft", "standard", "reference"] | None = _key(
+    preset: PresetName | None = _key(
         None, "a named scheme and accuracy, for those that are not given beside it"
     )
-    scheme: Literal["vogel", "paths"] = _key(
-        "vogel", "the thesis's sunflower spiral, or each light path to a stated accuracy"
+    scheme: SchemeName = _key(
+        COUNTED_RAYS.name, "the thesis's sunflower spiral, or each light path to a stated accuracy"
     )
     accuracy: Annotated[Number, Field(ge=1e-12, le=0.1)] = _key(
         1e-4, "of the scheme paths: largest error of the intensity over the largest intensity"
@@ -108,6 +108,10 @@ class Spectrum(Section):
     samples: Annotated[int, Field(ge=2, le=1_000_000)] = _key(
         1000, "wavenumbers, evenly spaced, both ends included"
     )
+
+    def wavenumbers(self) -> NDArray[np.float64]:
+        """Return the wavenumbers 2π/λ, evenly spaced and increasing, shape (K,), 1/µm."""
+        return wavenumbers(self.wavelength.min, self.wavelength.max, self.samples)
 
 
 class FocusScan(Section):

@@ -7,7 +7,7 @@ from typing import Any
 import yaml
 
 from octsim.base.errors import ConfigError
-from octsim.config.models import PRESETS
+from octsim.schemes.table import PRESETS
 
 
 def preset(given: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -1,12 +1,17 @@
-"""The band: wavenumbers of the source's spectrum."""
+"""The band: wavenumbers at which a source's light is looked at."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.config.models import Spectrum
 
+def wavenumbers(shortest: float, longest: float, samples: int) -> NDArray[np.float64]:
+    """Return wavenumbers 2π/λ, evenly spaced and increasing, shape (samples,), in 1/µm.
 
-def wavenumbers(spectrum: Spectrum) -> NDArray[np.float64]:
-    """Wavenumbers 2π/λ of the samples, evenly spaced and increasing, shape (K,), in 1/µm."""
-    band = spectrum.wavelength
-    return np.linspace(2 * np.pi / band.max, 2 * np.pi / band.min, spectrum.samples)
+    Parameters
+    ----------
+    shortest, longest : float
+        Wavelengths in vacuum at both ends of the band, µm; both are included.
+    samples : int
+        Number of wavenumbers.
+    """
+    return np.linspace(2 * np.pi / longest, 2 * np.pi / shortest, samples)

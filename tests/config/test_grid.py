@@ -19,7 +19,7 @@ from octsim.datasets.writer import write_stream
 from octsim.schemes.light import AccuracyStatus
 from octsim.stages import cost_estimate as estimates
 from octsim.stages.phase_slope import summary
-from octsim.stages.sweep import doubts
+from octsim.stages.spectra import doubts
 
 SMALL: dict[str, Any] = {
     "tracing": {"rays": 150},

@@ -24,9 +24,9 @@ from octsim.phase.estimators.fft import peak_depths
 from octsim.phase.estimators.likelihood import Model, maximum_likelihood
 from octsim.phase.estimators.series import series_phases
 from octsim.phase.modelled_spectra import model_of_sweep, modelled
+from octsim.phase.slopes import slope_of
 from octsim.phase.transform import centred, prepared, window_samples
-from octsim.stages.phase_slope import slope_of
-from octsim.stages.sweep import stored_light
+from octsim.stages.detections import stored_light
 from octsim.studies.estimators.contenders import COMMON, CONTENDERS, Band, contenders, slopes
 from octsim.studies.estimators.path_phase import path_slopes
 from octsim.studies.estimators.resolution import point_of, resolution
@@ -389,7 +389,7 @@ def test_where_there_is_no_focus_there_is_no_phase(name: str) -> None:
 @pytest.mark.parametrize("estimator", [*ESTIMATORS, "maximum_likelihood"])
 def test_the_ideal_slope_is_near_the_prediction(estimator: str) -> None:
     config = octsim.load_config({"processing": {"estimator": estimator}})
-    k, n_neuron = wavenumbers(config.spectrum), config.scene.refractive_index.neuron
+    k, n_neuron = config.spectrum.wavenumbers(), config.scene.refractive_index.neuron
     diameter = config.sweep.diameters.values()
     phase = ideal_phases(config, ideal_spectra(n_neuron, diameter, k), diameter, k)
     off_it = slope_of(diameter, phase) - predicted_phase_slope(n_neuron, k[0], k[-1])

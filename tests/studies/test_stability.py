@@ -17,6 +17,7 @@ from octsim.config.rounding import rounding_remarks
 from octsim.datasets.files import write
 from octsim.figures.stability import stability_figure
 from octsim.figures.style import look, save
+from octsim.instrument.build import scene_of
 from octsim.optics.beam import aim, aperture_radius, vogel_spiral
 from octsim.optics.detector import detector_of
 from octsim.optics.interface import Vector, fresnel, unit
@@ -141,9 +142,8 @@ def test_reflection_at_nearly_equal_indices_keeps_its_digits(contrast: float, co
 
 def test_the_objective_keeps_its_radius_close_to_the_index_of_glass() -> None:
     aperture = 1.52 * (1 - 1e-9)
-    objective = load_config({"objective": {"numerical_aperture": aperture}}).objective
     exact = 300 * numbers.tan(numbers.asin(numbers.mpf(aperture) / numbers.mpf(1.52)))
-    assert aperture_radius(objective, 1.52) == pytest.approx(float(exact), rel=1e-15)
+    assert aperture_radius(aperture, 1.52, 300.0) == pytest.approx(float(exact), rel=1e-15)
 
 
 def test_the_last_of_many_rays_is_as_well_placed_as_the_first() -> None:
@@ -164,7 +164,7 @@ def test_a_direction_gets_its_length_back() -> None:
 def test_octsims_formulas_ray_by_ray_give_its_own_bits() -> None:
     config = load_config({"tracing": {"rays": 100}, "detector": {"core_diameter": "40 um"}})
     case = prepared(Cell("", "", "", ()), config)
-    faces, place = faces_of(neuron_on_glass(config.scene, 1.4)), np.argsort(case.beam.number)
+    faces, place = faces_of(scene_of(config, 1.4)), np.argsort(case.beam.number)
     found = case.found
     for ray, code, path in zip(found.ray, found.path, found.optical_path_length, strict=True):
         arguments = (case.beam, 0.876, int(place[ray]), int(code))

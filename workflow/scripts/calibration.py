@@ -9,7 +9,7 @@ from octsim.config.grid import without_grid
 from octsim.datasets.files import write
 from octsim.figures.calibration import calibration_figure
 from octsim.figures.style import look, save
-from octsim.stages.sweep import doubts
+from octsim.stages.spectra import doubts
 from octsim.studies.calibration.study import calibration, summary
 
 with job(snakemake) as given, look():

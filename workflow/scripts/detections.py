@@ -2,7 +2,7 @@
 
 from job import fitted_law, job, trace
 
-from octsim.stages.sweep import detections
+from octsim.stages.detections import detections
 
 with job(snakemake) as config:
     law, threads = fitted_law(snakemake, config), snakemake.threads

@@ -4,7 +4,8 @@ from job import job
 
 from octsim.datasets.files import opened, read
 from octsim.datasets.writer import write_stream
-from octsim.stages.law import focus_law, gaussian_fits
+from octsim.stages.focus_law import focus_law
+from octsim.stages.gaussian_fits import gaussian_fits
 from octsim.stages.progress import watched
 
 with job(snakemake) as config:

@@ -2,7 +2,7 @@
 
 from job import job, trace
 
-from octsim.stages.focus import focus_scan
+from octsim.stages.focus_scan import focus_scan
 
 with job(snakemake) as config:
     threads = snakemake.threads

@@ -2,7 +2,7 @@
 
 from job import job, trace
 
-from octsim.stages.focus import focus_sweep
+from octsim.stages.focus_sweep import focus_sweep
 
 with job(snakemake) as config:
     threads = snakemake.threads

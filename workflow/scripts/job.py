@@ -21,7 +21,7 @@ from octsim.stages.run_id import is_latest
 if TYPE_CHECKING:
     import xarray as xr
 
-    from octsim.datasets.stage import Stream
+    from octsim.datasets.streams import Stream
     from octsim.instrument.points import Points
     from octsim.stages.scatter import Share
 

@@ -6,7 +6,8 @@ from job import job
 
 from octsim.datasets.files import opened
 from octsim.datasets.writer import write_stream
-from octsim.stages.phase_slope import fourier, phase_slope, summary
+from octsim.stages.fourier import fourier
+from octsim.stages.phase_slope import phase_slope, summary
 from octsim.stages.progress import watched
 
 with job(snakemake) as config:

@@ -8,7 +8,7 @@ from octsim.datasets.files import opened
 from octsim.datasets.writer import write_stream
 from octsim.stages.paths import light_paths
 from octsim.stages.progress import watched
-from octsim.stages.sweep import doubts, spectra
+from octsim.stages.spectra import doubts, spectra
 
 with job(snakemake) as config:
     with opened(snakemake.input.detections, "detections", config) as detected:

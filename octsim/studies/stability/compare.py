@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from octsim.base.errors import ConfigError
 from octsim.config.models import Config
 from octsim.config.rounding import rounding_remarks
-from octsim.optics.band import wavenumbers
 from octsim.optics.beam import Beam
 from octsim.optics.detector import detector_of
 from octsim.optics.scene import neuron_on_glass
@@ -138,7 +137,7 @@ def spectrum_sum(case: Case) -> Cost:
     The condition number is that of the paths' last digits in the sum, 2 k Σ|E Λ| Σ|E| / max I.
     """
     amplitude, path = case.found.amplitude, case.found.optical_path_length
-    k = wavenumbers(case.config.spectrum)
+    k = case.config.spectrum.wavenumbers()
     summed = intensity(amplitude, path, k)
     at = np.unique(np.linspace(0, k.size - 1, WAVENUMBERS).astype(int))
     if amplitude.size * at.size > 2_000_000:
