@@ -5,8 +5,9 @@ import time
 from functools import cache
 
 from octsim.base.provenance import source_digest
+from octsim.config.derive import parts_of
 from octsim.config.models import Config
-from octsim.datasets.catalog import instrument, parts_of
+from octsim.datasets.catalog import instrument
 from octsim.instrument.cache import PointCache
 from octsim.instrument.instrument import Tracer, tracer
 from octsim.instrument.point_entries import pack, unpack

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from octsim.base.errors import DatasetError, OctsimError
+from octsim.config.derive import by_rays, changed
 from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.datasets.files import read, write
@@ -26,7 +27,6 @@ from octsim.studies.calibration import study as calibrate
 from octsim.studies.calibration.study import calibration, interpolation_error, summary
 from octsim.studies.calibration.tolerances import PARAMETERS, drawn, moved, offsets_of, value_of
 from octsim.studies.sides import SIDES, path_field, side_slopes
-from octsim.studies.tradeoff.settings import by_rays, changed
 from octsim.tracing.follow import path_name
 
 Array = NDArray[np.float64]

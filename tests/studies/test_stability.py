@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from octsim.config.checks import rounding_remarks
 from octsim.config.grid import remarks
 from octsim.config.load import load_config
 from octsim.config.models import Config, SceneConfig
-from octsim.config.rounding import rounding_remarks
 from octsim.datasets.files import write
 from octsim.figures.stability import stability_figure
 from octsim.figures.style import look, save

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.base.errors import ConfigError
+from octsim.config.checks import rounding_remarks
 from octsim.config.models import Config
-from octsim.config.rounding import rounding_remarks
 from octsim.optics.band import wavenumbers
 from octsim.optics.beam import Beam
 from octsim.optics.detector import detector_of
