@@ -24,7 +24,8 @@ from octsim.config.grid import remarks
 from octsim.stages.run_id import begin, is_latest
 from octsim.config.load import load_config
 from octsim.base.provenance import lock_file, source_digest
-from octsim.datasets.catalog import keys_read, needs_law, parts_of
+from octsim.datasets.catalog import keys_read, needs_law
+from octsim.config.derive import parts_of
 from octsim.stages.workload import SCATTERED, shares_of
 
 try:

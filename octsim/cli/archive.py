@@ -37,9 +37,9 @@ def archive(given: Namespace) -> int:
     """Pack a run; say what a user should know of it on stderr."""
     from octsim.archive.pack import pack, told_before
     from octsim.archive.run_folder import run_in
-    from octsim.config.load import load_config
+    from octsim.config.derive import merge
+    from octsim.config.load import load_config, read_overlay
     from octsim.config.models import Config
-    from octsim.config.overlays import merge, read_overlay
 
     folder = given.folder.expanduser()
     run = run_in(folder).config

@@ -10,19 +10,16 @@ import yaml
 
 from octsim.base.errors import ConfigError
 from octsim.config.checks import plain_remarks
+from octsim.config.derive import bears_on, config_at
 from octsim.config.messages import known_keys
 from octsim.config.models import Config
-from octsim.config.overlays import merge, preset
 from octsim.datasets.variables import MEANINGS
-from octsim.schemes.table import PRESETS
 
 FIXED = (
     "run", "calibration", "expansion", "action_potential", "grid", "archive", "cache", "budget",
     "scatter",
 )  # fmt: skip
 """Sections that a run has once: what no stage over the grid depends on."""
-_PRESET = "tracing.preset"
-_SET_BY_PRESETS = sorted({f"tracing.{name}" for set_ in PRESETS.values() for name in set_})
 _NUMBERS = re.compile(r"[-+]?[0-9][0-9.e+-]*")
 
 
@@ -65,18 +62,6 @@ def value_at(config: Config, key: str) -> Any:
     for name in key.split("."):
         value = getattr(value, name, None)
     return value
-
-
-def overlap(one: str, other: str) -> bool:
-    """Tell whether one of two dotted keys is the other, or holds it."""
-    return f"{one}.".startswith(f"{other}.") or f"{other}.".startswith(f"{one}.")
-
-
-def bears_on(key: str, *read: str) -> bool:
-    """Tell whether a varied key sets any of some others, or parts of them."""
-    # a preset stands for other keys
-    sets = (key, *_SET_BY_PRESETS) if key == _PRESET else (key,)
-    return any(overlap(one, other) for one in sets for other in read)
 
 
 @cache
@@ -137,16 +122,6 @@ def combinations(config: Config, *keys: str) -> Iterator[Combination]:
             for key, value in zip(axis.keys, axis.rows[row], strict=True)
         }
         yield Combination(position, values, config_at(base, values))
-
-
-def config_at(base: Mapping[str, Any], values: Mapping[str, Any]) -> Config:
-    """Give a config, of plain data, with some dotted keys at other values."""
-    laid: dict[str, Any] = {}
-    for key, value in values.items():
-        for name in reversed(key.split(".")):
-            value = {name: value}
-        laid = merge(laid, value)
-    return Config.model_validate(merge(merge(base, preset(laid)), laid))
 
 
 def remarks(config: Config) -> list[str]:

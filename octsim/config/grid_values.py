@@ -11,12 +11,12 @@ from pydantic import ValidationError
 
 from octsim.base.errors import ConfigError
 from octsim.config.checks import impossible
+from octsim.config.derive import config_at, overlap, part_of
 from octsim.config.fields import DECIMALS
-from octsim.config.grid import FIXED, as_text, axes, combinations, config_at, overlap, value_at
+from octsim.config.grid import FIXED, as_text, axes, combinations, value_at
 from octsim.config.messages import explain, known_keys, nearest_key
 from octsim.config.models import Config, Grid
 from octsim.config.units import format_length, parse_length
-from octsim.datasets.catalog import part_of
 
 MOST = 100_000
 """Combinations of one grid."""

@@ -5,15 +5,60 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
+import yaml
 
 from octsim.base.errors import ConfigError, OctsimWarning
-from octsim.config.checks import impossible
+from octsim.config.checks import require_possible
+from octsim.config.derive import merge, overlaid, validated
 from octsim.config.grid import remarks
 from octsim.config.grid_values import expanded
-from octsim.config.messages import explain
 from octsim.config.models import Config
-from octsim.config.overlays import merge, preset, read_overlay
+
+
+class _Loader(yaml.SafeLoader):
+    """YAML in which a key may stand only once."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        merge = "tag:yaml.org,2002:merge"  # `<<`, which may well stand beside what it brings
+        keys = [self.construct_object(key, True) for key, _ in node.value if key.tag != merge]
+        for key in keys:
+            if keys.count(key) > 1:
+                raise yaml.constructor.ConstructorError(
+                    None, None, f"the key '{key}' stands twice", node.start_mark
+                )
+        return super().construct_mapping(node, deep)
+
+
+def read_overlay(path: Path) -> Mapping[str, Any]:
+    """Read what a YAML or JSON file holds.
+
+    Raises
+    ------
+    ConfigError
+        If it can't be read, or does not hold keys with values.
+    """
+    try:
+        content = yaml.load(path.read_text(encoding="utf-8"), _Loader)
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "it is not text"
+        raise ConfigError(f"{path}: can't be read ({reason}); give a YAML file") from None
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        place = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        problem = " ".join((error.problem or "not YAML").split())
+        raise ConfigError(f"{path}{place}: not as YAML should be: {problem}") from None
+    except yaml.YAMLError as error:
+        raise ConfigError(f"{path}: not YAML: {' '.join(str(error).split())}") from None
+    except ValueError as error:
+        raise ConfigError(f"{path}: holds a date that there is not: {error}") from None
+    if content is None:
+        return {}
+    if not isinstance(content, Mapping):
+        raise ConfigError(
+            f"{path}: holds a {type(content).__name__}, not keys with values; "
+            "write it as in config/default.yaml"
+        )
+    return content
 
 
 def load_config(*overlays: str | Path | Mapping[str, Any]) -> Config:
@@ -51,14 +96,11 @@ def load_config(*overlays: str | Path | Mapping[str, Any]) -> Config:
         given = merge(
             given, overlay if isinstance(overlay, Mapping) else read_overlay(Path(overlay))
         )
-    try:
-        config = Config.model_validate(merge(merge(Config().to_dict(), preset(given)), given))
-    except ValidationError as error:
-        raise ConfigError("\n".join(dict.fromkeys(map(explain, error.errors())))) from None
+    config = validated(overlaid(Config().to_dict(), given))
     if config.grid.varied:
         config = expanded(config)
-    elif problems := list(impossible(config)):
-        raise ConfigError("\n".join(problems))
+    else:
+        require_possible(config)
     for remark in remarks(config):
         warnings.warn(remark, OctsimWarning, stacklevel=2)
     return config

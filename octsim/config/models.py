@@ -68,7 +68,10 @@ class DetectorConfig(Section):
 
 
 if TYPE_CHECKING:
-    SchemeName = PresetName = str
+    from typing import TypeAlias
+
+    SchemeName: TypeAlias = str
+    PresetName: TypeAlias = str
 else:  # a scheme is a row of the table, and nothing more to be listed here
     SchemeName, PresetName = Literal[tuple(SCHEMES)], Literal[tuple(PRESETS)]
 

@@ -3,7 +3,8 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from octsim.config.grid import Axis, axes, bears_on, combinations
+from octsim.config.derive import parts_of
+from octsim.config.grid import Axis, axes, combinations
 from octsim.config.models import Config
 
 _SPIRAL = ("tracing.rays", "tracing.min_amplitude")
@@ -102,26 +103,6 @@ def _behind(stage: str, config: Config) -> tuple[str, ...]:
         "estimators": (*_COMPARED, *fitted),
     }
     return behind.get(stage, _read(stage, config))
-
-
-def part_of(data: Mapping[str, Any], key: str) -> Any:
-    """Give what stands under a dotted key of a config's plain data, or None."""
-    part: Any = data
-    for name in key.split("."):
-        part = part.get(name) if isinstance(part, Mapping) else None
-    return part
-
-
-def parts_of(data: Mapping[str, Any], *keys: str) -> dict[str, object]:
-    """Give what stands under some dotted keys of a config's plain data, and how they are varied."""
-    grid = data.get("grid", {})
-    varied = {
-        f"grid.{key}": value
-        for key, value in grid.items()
-        if key != "combine" and bears_on(key, *keys)
-    }
-    how = {"grid.combine": grid["combine"]} if varied else {}
-    return {key: part_of(data, key) for key in keys} | varied | how
 
 
 def differing(stage: str, config: Config, other: Mapping[str, Any]) -> list[str]:

@@ -9,9 +9,9 @@ import xarray as xr
 from pydantic import ValidationError
 
 from octsim.base.errors import DatasetError
+from octsim.config.derive import merge
 from octsim.config.messages import explain
 from octsim.config.models import Config
-from octsim.config.overlays import merge
 
 SCHEMA = 1
 """Of the files that this octsim writes; files of octsim 0.1.0 have no number, which counts as 0."""

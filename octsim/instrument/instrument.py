@@ -14,7 +14,7 @@ from octsim.config.models import Config
 from octsim.instrument.build import optics_of, scene_of
 from octsim.instrument.point_keys import instrument_key
 from octsim.instrument.points import Points
-from octsim.schemes.field_sum import intensity_of, relative_error
+from octsim.schemes.field_sum import spectrum_of
 from octsim.schemes.light import AccuracyStatus, Light, LightAt
 from octsim.schemes.table import SCHEMES, Scheme
 
@@ -85,9 +85,7 @@ class Instrument:
     def sum(self, light: Light) -> Spectrum:
         """Sum light of this instrument to its spectrum."""
         field = self.scheme.field(light, self.wavenumber, self._options)
-        intensity = intensity_of(field.values)
-        largest = float(np.sqrt(intensity.max()))
-        return Spectrum(intensity, relative_error(largest, field.error), light.status)
+        return Spectrum(*spectrum_of(field), light.status)
 
     def spectrum(self, diameter: float, focus: float) -> Spectrum:
         """Return the spectrum of a diameter at a focus, both µm."""

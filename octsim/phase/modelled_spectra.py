@@ -3,11 +3,11 @@
 import numpy as np
 
 from octsim.base.threads import each
+from octsim.config.derive import by_accuracy
 from octsim.config.models import Config
 from octsim.instrument.instrument import Instrument
 from octsim.phase.estimators.estimate import Array
 from octsim.phase.estimators.likelihood import Model
-from octsim.studies.tradeoff.settings import by_accuracy
 
 MODEL_ACCURACY = 1e-6
 """Of the spectra that maximum likelihood compares with."""

@@ -101,6 +101,12 @@ def intensity_of(values: NDArray[np.complex128]) -> NDArray[np.float64]:
     return squared
 
 
+def spectrum_of(field: Field) -> tuple[NDArray[np.float64], float]:
+    """Return the intensity of a field, (K,), and the estimate of max |ΔI| / max I."""
+    squared = intensity_of(field.values)
+    return squared, relative_error(math.sqrt(float(squared.max())), field.error)
+
+
 def field_of_rays(
     amplitude: NDArray[np.float64],
     rough_amplitude: NDArray[np.float64],

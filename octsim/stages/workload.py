@@ -25,14 +25,15 @@ class Work(NamedTuple):
 
 def work_of(stage: str, config: Config) -> Work:
     """Give what a stage that traces has to do at a plain config."""
-    size, seconds = point_cost(config)
+    cost = point_cost(config)
     count, each = {
         "focus_scan": (config.focus_scan.focus.num, 1),
         # a diameter's foci are one row of the dataset
         "focus_sweep": (config.focus_law.diameters.num, config.focus_law.fraction.num),
         "detections": (config.sweep.diameters.num, 1),
     }[stage]
-    return Work(count, each * seconds, points_per_block(each * size, each * seconds))
+    together = points_per_block(each * cost.size, each * cost.seconds)
+    return Work(count, each * cost.seconds, together)
 
 
 def shares_of(config: Config) -> dict[str, int]:

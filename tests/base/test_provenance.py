@@ -75,7 +75,7 @@ def test_a_changed_formula_changes_the_digest_of_what_uses_it(
     copy: Path, file: str, old: str, new: str
 ) -> None:
     users = ("'octsim.schemes.vogel'", "'octsim.schemes.paths.integrate'")
-    others = ("'octsim.config.units'", "'octsim.stages.detections'")
+    others = ("'octsim.config.units'", "'octsim.phase.transform'")
     before = {source: digest_in(copy, source) for source in users + others}
     edit(copy / file, old, new)
     after = {source: digest_in(copy, source) for source in users + others}

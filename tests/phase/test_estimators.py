@@ -14,7 +14,6 @@ from octsim.base.errors import OctsimError
 from octsim.config.models import Config, Processing
 from octsim.figures.estimators import estimators_figure
 from octsim.figures.style import look
-from octsim.optics.band import wavenumbers
 from octsim.optics.two_beams import ideal_spectra, predicted_phase_slope
 from octsim.phase.by_config import estimator_of, ideal_phases
 from octsim.phase.cramer_rao import phase_bound
@@ -34,7 +33,7 @@ from octsim.studies.estimators.study import estimators, from_trend, summary
 from octsim.studies.estimators.wrong_scene import misreading
 
 Array = NDArray[np.float64]
-K = wavenumbers(Config().spectrum)
+K = Config().spectrum.wavenumbers()
 X = place(K)
 DEPTH = np.linspace(1.45, 2.75, 27)
 PHASE = np.linspace(-3, 3, 27)

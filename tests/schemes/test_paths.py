@@ -16,7 +16,7 @@ from octsim.optics.beam import Beam, aim
 from octsim.optics.detector import Detector
 from octsim.optics.interface import cos_transmitted_squared, fresnel
 from octsim.optics.scene import Cylinder, Medium, Plane, Scene
-from octsim.schemes.field_sum import intensity, sum_paths
+from octsim.schemes.field_sum import field_of_paths, intensity, spectrum_of
 from octsim.schemes.light import AccuracyStatus, Light
 from octsim.schemes.paths.integrate import integrate
 from octsim.tracing.follow import path_name
@@ -136,7 +136,7 @@ def test_the_error_falls_with_the_accuracy_and_is_not_underestimated() -> None:
     truth = field(integrate(scene, detector, focus, BAND, 1e-9), K)
     for accuracy in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6):
         light = integrate(scene, detector, focus, BAND, accuracy)
-        _, estimate = sum_paths(*light[:5], K, accuracy)
+        _, estimate = spectrum_of(field_of_paths(*light[:5], K, accuracy))
         assert error(light, truth, K) < estimate < accuracy
 
 
@@ -167,15 +167,15 @@ def test_a_focus_beyond_the_objective_is_refused() -> None:
 def test_interpolating_paths_over_k_is_summing_their_rays() -> None:
     light = integrate(scene_of(CONFIG, 1.4), detector_of(CONFIG), 0.8824, BAND, 1e-4)
     for accuracy in (1e-3, 1e-6, 1e-10):
-        spectrum, _ = sum_paths(*light[:5], K, accuracy)
+        spectrum, _ = spectrum_of(field_of_paths(*light[:5], K, accuracy))
         summed = intensity(light.amplitude, light.optical_path_length, K)
         assert np.abs(spectrum - summed).max() < 0.05 * accuracy * summed.max() + 1e-14
 
 
 def test_rays_of_one_path_may_lie_far_apart() -> None:
     amplitude, lengths = np.array([1e-3, 2e-3, -1e-3]), np.array([0.5, 40.0, 190.0])
-    spectrum, estimate = sum_paths(
-        np.array([4, 4, 4]), amplitude, 0.99 * amplitude, lengths, 0.0, K, 1e-6
+    spectrum, estimate = spectrum_of(
+        field_of_paths(np.array([4, 4, 4]), amplitude, 0.99 * amplitude, lengths, 0.0, K, 1e-6)
     )
     assert np.allclose(spectrum, intensity(amplitude, lengths, K), atol=1e-14)
     assert estimate == pytest.approx(0.02, rel=0.02)

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from octsim.base.errors import DatasetError, OctsimError
+from octsim.config.derive import by_rays, changed
 from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.datasets.files import read, write
 from octsim.figures.calibration import calibration_figure
 from octsim.figures.style import look, save
 from octsim.instrument.instrument import Instrument
-from octsim.optics.band import wavenumbers
 from octsim.optics.two_beams import ideal_spectra, predicted_phase_slope
 from octsim.phase.derivatives import derivative, stencil, wrapped
 from octsim.phase.estimators.series import series_phases
@@ -26,11 +26,10 @@ from octsim.studies.calibration import study as calibrate
 from octsim.studies.calibration.study import calibration, interpolation_error, summary
 from octsim.studies.calibration.tolerances import PARAMETERS, drawn, moved, offsets_of, value_of
 from octsim.studies.sides import SIDES, path_field, side_slopes
-from octsim.studies.tradeoff.settings import by_rays, changed
 from octsim.tracing.follow import path_name
 
 Array = NDArray[np.float64]
-K = wavenumbers(Config().spectrum)
+K = Config().spectrum.wavenumbers()
 N = Config().scene.refractive_index.neuron
 FITTED = calibrate.calibrating(Config())
 

@@ -10,6 +10,7 @@ from scipy.optimize import brentq
 
 import octsim
 from octsim.base.errors import OctsimError
+from octsim.config.derive import by_accuracy
 from octsim.config.load import load_config
 from octsim.config.models import FocusLine, Processing
 from octsim.optics.two_beams import predicted_phase_slope
@@ -30,7 +31,6 @@ from octsim.studies.causes.switches import (
     signal,
     slopes,
 )
-from octsim.studies.tradeoff.settings import by_accuracy
 
 Array = NDArray[np.float64]
 LINE = {"slope": 0.58, "intercept": "64 nm"}

@@ -10,18 +10,17 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from octsim.config.checks import rounding_remarks
 from octsim.config.grid import remarks
 from octsim.config.load import load_config
-from octsim.config.models import Config, SceneConfig
-from octsim.config.rounding import rounding_remarks
+from octsim.config.models import Config
 from octsim.datasets.files import write
 from octsim.figures.stability import stability_figure
 from octsim.figures.style import look, save
-from octsim.instrument.build import scene_of
+from octsim.instrument.build import detector_of, scene_of
 from octsim.optics.beam import aim, aperture_radius, vogel_spiral
-from octsim.optics.detector import detector_of
 from octsim.optics.interface import Vector, fresnel, unit
-from octsim.optics.scene import Scene, neuron_on_glass
+from octsim.optics.scene import Scene
 from octsim.studies.stability import compare as comparison
 from octsim.studies.stability import pairs
 from octsim.studies.stability import study as stability
@@ -87,10 +86,10 @@ def test_the_axial_ray_of_50_digits_has_the_paths_of_parallel_plates() -> None:
 
 
 def test_a_diameter_off_by_a_ten_billionth_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    def off(config: SceneConfig, diameter: float) -> Scene:
-        return neuron_on_glass(config, diameter * (1 + 1e-10))
+    def off(config: Config, diameter: float) -> Scene:
+        return scene_of(config, diameter * (1 + 1e-10))
 
-    monkeypatch.setattr(pairs, "neuron_on_glass", off)
+    monkeypatch.setattr(pairs, "scene_of", off)
     row = measured("default / none / ")
     assert row.status == Status.BEYOND
     assert "phase" in row.reason

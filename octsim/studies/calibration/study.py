@@ -8,6 +8,7 @@ import xarray as xr
 from scipy.interpolate import CubicSpline
 
 from octsim.base.threads import each
+from octsim.config.derive import by_accuracy, by_rays
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.datasets.files import flags, make
@@ -19,7 +20,6 @@ from octsim.schemes.light import AccuracyStatus, Light
 from octsim.stages.focus_law import focus_line
 from octsim.studies.calibration.tolerances import PARAMETERS, moved, offsets_of
 from octsim.studies.sides import side_slopes
-from octsim.studies.tradeoff.settings import by_accuracy, by_rays
 
 ACCURACY = 1e-8
 """Of the spectra: 1e-6 moves slopes over 0.1 nm by up to 2e-4 mrad/nm, this by less than 1e-5."""

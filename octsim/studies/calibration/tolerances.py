@@ -5,12 +5,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from octsim.config.derive import changed, nested, part_of
 from octsim.config.models import Config
 from octsim.config.units import format_length
-from octsim.datasets.catalog import part_of
 from octsim.instrument.build import detector_of
 from octsim.phase.derivatives import Array, stencil
-from octsim.studies.tradeoff.settings import changed
 
 
 class Place(NamedTuple):
@@ -89,7 +88,9 @@ def moved(config: Config, changes: Mapping[str, float], law_slope: float) -> Pla
             value *= 2 * config.objective.magnification
         if key:
             overlay[key] = format_length(value) if isinstance(part_of(data, key), str) else value
-    return Place(changed(config, *map(_nested, overlay.items())), diameter, focus)
+    return Place(
+        changed(config, *(nested(key, value) for key, value in overlay.items())), diameter, focus
+    )
 
 
 def drawn(config: Config, generator: np.random.Generator, law_slope: float) -> Place:
@@ -100,8 +101,3 @@ def drawn(config: Config, generator: np.random.Generator, law_slope: float) -> P
         at, (least, most) = value_of(config, name), limits(config, name)
         changes[name] = min(max(by, least - at), most - at)
     return moved(config, changes, law_slope)
-
-
-def _nested(item: tuple[str, object]) -> dict[str, Any]:
-    first, *rest = item[0].split(".")
-    return {first: _nested((".".join(rest), item[1])) if rest else item[1]}

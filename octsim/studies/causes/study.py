@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from octsim.config.derive import by_accuracy
 from octsim.config.models import Config, FocusLine
 from octsim.datasets.files import make
 from octsim.optics.two_beams import aliasing_step, predicted_phase_slope
@@ -33,7 +34,6 @@ from octsim.studies.causes.switches import (
     true_level,
     weights,
 )
-from octsim.studies.tradeoff.settings import by_accuracy
 
 Array = NDArray[np.float64]
 POINT = 1e-5

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from octsim.config.derive import changed
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.phase.cramer_rao import checked_slope, diameter_bound
@@ -13,7 +14,6 @@ from octsim.phase.estimators.likelihood import Model
 from octsim.phase.modelled_spectra import modelled
 from octsim.phase.noise import measured_counts, photons_for
 from octsim.studies.estimators.contenders import LIKELIHOOD, Band, of_series
-from octsim.studies.tradeoff.settings import changed
 
 RATIOS = (20.0, 30.0, 40.0, 50.0, 60.0)
 """Signal-to-noise ratios, dB."""

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from octsim.base.threads import each
+from octsim.config.derive import by_accuracy, by_rays
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.datasets.files import make
@@ -34,7 +35,6 @@ from octsim.studies.estimators.resolution import (
     resolution,
 )
 from octsim.studies.estimators.wrong_scene import Other, likelihood_offset, misreading, others
-from octsim.studies.tradeoff.settings import by_accuracy, by_rays
 
 SEED = 20231115
 """Of all draws; each diameter, noise and ratio has its own stream."""

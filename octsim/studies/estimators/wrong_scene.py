@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from octsim.config.derive import changed
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.config.units import format_length
@@ -12,7 +13,6 @@ from octsim.phase.estimators.estimate import Array
 from octsim.phase.estimators.likelihood import Model, maximum_likelihood
 from octsim.phase.modelled_spectra import modelled
 from octsim.studies.estimators.contenders import Band, slopes
-from octsim.studies.tradeoff.settings import changed
 
 GAP, INDEX, FOCUS = 0.015, 0.01, 0.1
 """How far another scene's gap (µm), neuron's index and focus (µm) are from the model's."""

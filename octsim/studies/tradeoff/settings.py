@@ -1,12 +1,12 @@
 """What the trade of cost for accuracy varies: one factor of a run's config at a time."""
 
 import math
-import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from octsim.config.load import load_config
-from octsim.config.models import PRESETS, Config
+from octsim.config.derive import by_accuracy, by_rays, changed
+from octsim.config.models import Config
+from octsim.schemes.table import PRESETS
 
 RAYS = (100, 300, 1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000)
 ACCURACIES = (
@@ -37,30 +37,6 @@ class Setting(NamedTuple):
     """Which of the diameters are traced; without all there is no phase slope."""
     law: bool = True
     """Whether the focus law is fitted."""
-
-
-def changed(config: Config, *overlays: Mapping[str, Any]) -> Config:
-    """Lay overlays over a config; what a user would be warned of has been said of the run."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return load_config(config.to_dict(), *overlays)
-
-
-def by_rays(config: Config, rays: int) -> Config:
-    """Give a config that counts rays."""
-    return changed(config, {"tracing": {"preset": None, "scheme": "vogel", "rays": rays}})
-
-
-def by_accuracy(config: Config, accuracy: float, **tracing: int) -> Config:
-    """Give a config that integrates light paths to an accuracy."""
-    asked = {"preset": None, "scheme": "paths", "accuracy": accuracy}
-    return changed(config, {"tracing": asked | tracing})
-
-
-def reference(config: Config) -> Config:
-    """Give the config whose results the errors are measured from."""
-    most = max(15, config.tracing.max_intersections)
-    return by_accuracy(config, 1e-9, max_intersections=most)
 
 
 def settings(config: Config) -> list[Setting]:

@@ -8,6 +8,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from octsim.base.threads import each
+from octsim.config.derive import by_accuracy, by_rays, changed, reference
 from octsim.config.models import Config, FocusLine
 from octsim.datasets.files import make
 from octsim.instrument.instrument import Instrument
@@ -22,12 +23,8 @@ from octsim.studies.tradeoff.settings import (
     CONVERGED_SAMPLES,
     FINER,
     Setting,
-    by_accuracy,
-    by_rays,
-    changed,
     is_the_runs,
     preset_of,
-    reference,
     settings,
 )
 

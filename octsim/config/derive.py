@@ -1,0 +1,144 @@
+"""Configs as plain data: what stands under dotted keys, and configs made from others."""
+
+from collections.abc import Mapping
+from functools import reduce
+from typing import Any
+
+from pydantic import ValidationError
+
+from octsim.base.errors import ConfigError
+from octsim.config.checks import require_possible
+from octsim.config.messages import explain
+from octsim.config.models import Config
+from octsim.schemes.table import COUNTED_RAYS, LIGHT_PATHS, PRESETS
+
+_PRESET = "tracing.preset"
+_SET_BY_PRESETS = sorted({f"tracing.{key}" for preset in PRESETS.values() for key in preset})
+
+
+def part_of(data: Mapping[str, Any], key: str) -> Any:
+    """Return what stands under a dotted key of a config's plain data, or None."""
+    part: Any = data
+    for name in key.split("."):
+        part = part.get(name) if isinstance(part, Mapping) else None
+    return part
+
+
+def parts_of(data: Mapping[str, Any], *keys: str) -> dict[str, object]:
+    """Return what stands under dotted keys of a config's plain data, and how they are varied."""
+    grid = data.get("grid", {})
+    varied = {
+        f"grid.{key}": value
+        for key, value in grid.items()
+        if key != "combine" and bears_on(key, *keys)
+    }
+    how = {"grid.combine": grid["combine"]} if varied else {}
+    return {key: part_of(data, key) for key in keys} | varied | how
+
+
+def overlap(one: str, other: str) -> bool:
+    """Tell whether one of two dotted keys is the other, or holds it."""
+    return f"{one}.".startswith(f"{other}.") or f"{other}.".startswith(f"{one}.")
+
+
+def bears_on(key: str, *read: str) -> bool:
+    """Tell whether a varied key sets any of some others, or parts of them."""
+    # a preset stands for other keys
+    sets = (key, *_SET_BY_PRESETS) if key == _PRESET else (key,)
+    return any(overlap(one, other) for one in sets for other in read)
+
+
+def nested(key: str, value: object) -> dict[str, Any]:
+    """Return the overlay that sets one dotted key.
+
+    Examples
+    --------
+    >>> nested("scene.gap", "5 nm")
+    {'scene': {'gap': '5 nm'}}
+    """
+    first, _, rest = key.partition(".")
+    return {first: nested(rest, value) if rest else value}
+
+
+def merge(base: Mapping[str, Any], overlay: Mapping[str, Any]) -> dict[str, Any]:
+    """Lay one mapping over another: mappings merge deeply, everything else replaces."""
+    merged = dict(base)
+    for key, value in overlay.items():
+        below = merged.get(key)
+        if isinstance(below, Mapping) and isinstance(value, Mapping):
+            value = merge(below, value)
+        merged[key] = value
+    return merged
+
+
+def overlaid(base: Mapping[str, Any], overlay: Mapping[str, Any]) -> dict[str, Any]:
+    """Lay an overlay over a config's plain data, and below it what a preset it names stands for."""
+    tracing = overlay.get("tracing")
+    name = tracing.get("preset") if isinstance(tracing, Mapping) else None
+    preset = {"tracing": PRESETS.get(name, {})} if isinstance(name, str) else {}
+    return merge(merge(base, preset), overlay)
+
+
+def validated(data: Mapping[str, Any]) -> Config:
+    """Return the config of plain data, each key checked.
+
+    Raises
+    ------
+    ConfigError
+        If a key is unknown or a value wrong; one line for each problem.
+    """
+    try:
+        return Config.model_validate(data)
+    except ValidationError as error:
+        raise ConfigError("\n".join(dict.fromkeys(map(explain, error.errors())))) from None
+
+
+def config_at(base: Mapping[str, Any], values: Mapping[str, Any]) -> Config:
+    """Return a config, of plain data, with some dotted keys at other values.
+
+    Raises
+    ------
+    ValidationError
+        If a value is wrong.
+    """
+    nothing: dict[str, Any] = {}
+    laid = reduce(merge, (nested(key, value) for key, value in values.items()), nothing)
+    return Config.model_validate(overlaid(base, laid))
+
+
+def changed(config: Config, *overlays: Mapping[str, Any]) -> Config:
+    """Return a config with overlays laid over it, checked without remarks: the run's are made.
+
+    Raises
+    ------
+    ConfigError
+        If a value is wrong, or the whole impossible.
+    """
+    other = validated(reduce(merge, overlays, config.to_dict()))
+    if not other.grid.varied:
+        require_possible(other)
+    return other
+
+
+def by_rays(config: Config, rays: int) -> Config:
+    """Return a config that counts some number of rays."""
+    asked = {"preset": None, "scheme": COUNTED_RAYS.name, "rays": rays}
+    return changed(config, {"tracing": asked})
+
+
+def counting_rays(config: Config) -> Config:
+    """Return a config that counts as many rays as its key ``tracing.rays`` says."""
+    tracing = config.tracing.model_copy(update={"scheme": COUNTED_RAYS.name})
+    return config.model_copy(update={"tracing": tracing})
+
+
+def by_accuracy(config: Config, accuracy: float, **tracing: int) -> Config:
+    """Return a config that integrates light paths to an accuracy."""
+    asked = {"preset": None, "scheme": LIGHT_PATHS.name, "accuracy": accuracy}
+    return changed(config, {"tracing": asked | tracing})
+
+
+def reference(config: Config) -> Config:
+    """Return the config whose results errors are measured from."""
+    most = max(15, config.tracing.max_intersections)
+    return by_accuracy(config, 1e-9, max_intersections=most)
