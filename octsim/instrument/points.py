@@ -3,11 +3,14 @@
 import threading
 import time
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
-from octsim.instrument.cache import PointCache
 from octsim.instrument.point_entries import pack, unpack
 from octsim.instrument.point_keys import point_key
 from octsim.schemes.light import Light
+
+if TYPE_CHECKING:
+    from octsim.instrument.cache import PointCache  # it saves time and decides no result
 
 LightAtPoint = Callable[[float, float], Light]
 """From diameter and focus, µm, to detected light."""
@@ -25,7 +28,7 @@ class Points:
         Where traced points are kept.
     """
 
-    def __init__(self, cache: PointCache | None = None) -> None:
+    def __init__(self, cache: "PointCache | None" = None) -> None:
         self._cache, self._lock = cache, threading.Lock()
         self._new: list[tuple[bytes, bytes]] = []
         self._bytes, self._kept = 0, time.monotonic()
@@ -64,6 +67,10 @@ class Points:
             return light
 
         return at
+
+    def counts(self) -> dict[str, int]:
+        """Return how many points were found anew, and how many were kept from before."""
+        return {"points_traced": self.traced, "points_from_cache": self.from_cache}
 
     def keep(self) -> None:
         """Write what was traced since the last time to the cache."""

@@ -12,7 +12,7 @@ from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.phase.by_config import estimator_of
 from octsim.phase.transform import fourier_components, optical_depths
-from octsim.stages.cost_estimate import points_per_block
+from octsim.stages.workload import points_per_block
 
 
 @Streamed
@@ -35,7 +35,7 @@ def fourier(config: Config, spectra: xr.Dataset) -> Stream:
         }
 
     title = "Fourier transform of the spectrum, for each diameter"
-    layout = Layout("fourier", config, title, __name__, own, "diameter")
+    layout = Layout("fourier", config, title, own, "diameter")
     return Stream(layout, _transformed(layout, Stored(spectra, "spectra", config, layout)))
 
 

@@ -13,8 +13,8 @@ from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.schemes.light import Light
-from octsim.stages.cost_estimate import point_cost, points_per_block
 from octsim.stages.detections import stored_light
+from octsim.stages.workload import point_cost, points_per_block
 from octsim.tracing.follow import path_name
 
 _SAMPLES = 101  # of the band, for means over it
@@ -106,16 +106,14 @@ def light_paths(config: Config, detected: xr.Dataset) -> Stream:
         return {"diameter": ("diameter", config.sweep.diameters.values())}
 
     title = "What each light path has in the spectra"
-    unnamed = Layout("paths", config, title, __name__, swept, "diameter")
+    unnamed = Layout("paths", config, title, swept, "diameter")
     stored = Stored(detected, "detections", config, unnamed)
     codes = _strongest_first(unnamed, stored)
     named: dict[str, Coordinate] = {
         "path": ("path", np.array([path_name(code) for code in codes.tolist()], str)),
         "path_code": ("path", codes),
     }
-    layout = Layout(
-        "paths", config, title, __name__, lambda config: named | swept(config), "diameter"
-    )
+    layout = Layout("paths", config, title, lambda config: named | swept(config), "diameter")
     return Stream(layout, _shared(layout, stored, codes))
 
 

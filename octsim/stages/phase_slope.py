@@ -33,7 +33,7 @@ def phase_slope(config: Config, transformed: xr.Dataset) -> Stream:
         return {"diameter": ("diameter", config.sweep.diameters.values())}
 
     title = "Phase slope: change of the spectrum's phase with the diameter"
-    layout = Layout("phase_slope", config, title, __name__, own, "diameter", _component_count)
+    layout = Layout("phase_slope", config, title, own, "diameter", _component_count)
     return Stream(layout, _differentiated(layout, Stored(transformed, "fourier", config, layout)))
 
 

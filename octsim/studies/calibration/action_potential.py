@@ -90,7 +90,6 @@ def action_potential(
             **_trips(config, calibration, law, threads),
         },
         {"time": time, "trip_diameter": trip_diameters(config)},
-        __name__,
     )
 
 

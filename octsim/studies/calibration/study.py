@@ -236,7 +236,6 @@ def _dataset(config: Config, diameters: Array, column: dict[str, Any]) -> xr.Dat
         "Change of the phase with the diameter, at a fixed focus and gap",
         variables,
         {"diameter": diameters, "parameter": list(PARAMETERS)},
-        __name__,
     )
 
 

@@ -142,7 +142,6 @@ def causes(config: Config, law: xr.Dataset | None = None, threads: int = 1) -> x
             "spike_neighbour": near,
             "wavenumber": k,
         },
-        __name__,
     )
 
 

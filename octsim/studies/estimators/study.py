@@ -118,7 +118,6 @@ def estimators(
             "noise_diameter": _at_places(diameter),
             "scene": [one.name for one in scenes],
         },
-        __name__,
     )
 
 
