@@ -27,9 +27,10 @@ def _polynomial(intensity: Array, weights: Array, degree: int) -> Array:
     columns = np.polynomial.legendre.legvander(np.linspace(-1, 1, intensity.shape[-1]), degree)
     root = np.sqrt(np.abs(weights))  # those of a flat top are negative at the ends
     onto = np.linalg.pinv(columns * root[:, np.newaxis]) * root
-    # by einsum, as a product of matrices depends on how many spectra there are
-    coefficients = np.einsum("...k,pk->...p", intensity, onto)
-    fitted: Array = np.einsum("...p,kp->...k", coefficients, columns)
+    fitted = np.zeros_like(intensity)
+    # a product of matrices, or einsum, sums in an order that depends on how many spectra there are
+    for column, part in zip(columns.T, onto, strict=True):
+        fitted += (intensity * part).sum(axis=-1, keepdims=True) * column
     return fitted
 
 
@@ -60,6 +61,8 @@ def centred(intensity: Array, centre: str, window: Named = "boxcar", degree: int
     degree : int
         Of the polynomial.
     """
+    # each spectrum's samples beside each other: the order in which numpy sums hangs on that
+    intensity = np.ascontiguousarray(intensity)
     weights = window_samples(window, intensity.shape[-1])
     without: Array = intensity - _CENTRES[centre](intensity, weights, degree)
     return without

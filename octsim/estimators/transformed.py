@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from octsim.estimators.estimate import Array, Estimate, middle, oscillation
+from octsim.estimators.estimate import Array, Estimate, at_depth, middle
 from octsim.processing import Processing
 from octsim.transform import fourier_components, optical_depths, prepared
 
@@ -46,8 +46,7 @@ def zero_padded(
     processing : Processing
         Its centre and window.
     """
-    waves = oscillation(wavenumber, depth)
-    value = np.einsum("dk,dk->d", prepared(intensity, processing), waves.conj())
+    value = at_depth(prepared(intensity, processing), wavenumber, depth)
     return Estimate(np.angle(value), depth)
 
 
