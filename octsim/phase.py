@@ -1,6 +1,7 @@
 """From spectra to phases and the phase slope (figures 9 to 12)."""
 
 from collections.abc import Iterator
+from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from octsim.band import wavenumbers
 from octsim.config import Config
+from octsim.datasets import flags
 from octsim.differences import wrapped
 from octsim.estimates import points_per_block
 from octsim.estimation import estimator_of, ideal_phases
@@ -20,9 +22,20 @@ from octsim.stored import Stored
 from octsim.transform import centred as centred
 from octsim.transform import fourier_components as fourier_components
 from octsim.transform import optical_depths as optical_depths
+from octsim.transform import rounding_level
 from octsim.transform import windowed as windowed
 
 _DEGREE = 4
+
+
+class PhaseStatus(IntEnum):
+    """Whether a component has a phase."""
+
+    KNOWN = 0
+    BELOW_ROUNDING = 1
+    """It holds nothing but rounding, as the constant one, whose mean is subtracted."""
+    NO_SPECTRUM = 2
+    """The spectrum is NaN, as there is no focus."""
 
 
 class PhaseSlopes(NamedTuple):
@@ -99,8 +112,8 @@ def fourier(config: Config, spectra: xr.Dataset) -> Stream:
     Returns
     -------
     Dataset
-        magnitude and phase (diameter, component), depth(component); and, of another estimator than
-        fft, estimated_phase and estimated_depth (diameter).
+        magnitude, phase and whether that is known (diameter, component), depth(component); and, of
+        another estimator than fft, estimated_phase and estimated_depth (diameter).
     """
 
     def own(config: Config) -> dict[str, Coordinate]:
@@ -132,9 +145,13 @@ def _transformed(layout: Layout, stored: Stored) -> Iterator[Part]:
         part = stored.part(at, span)
         intensity = part["intensity"].values
         components = fourier_components(intensity, at.config.processing)
+        magnitude = np.abs(components)
+        status = _status(magnitude, rounding_level(intensity, at.config.processing))
+        phase = np.where(status == PhaseStatus.KNOWN, np.angle(components), np.nan)
         variables: dict[str, Any] = {
-            "magnitude": (dimensions, np.abs(components)),
-            "phase": (dimensions, np.angle(components)),
+            "magnitude": (dimensions, magnitude),
+            "phase": (dimensions, phase),
+            "phase_status": (dimensions, *flags(PhaseStatus, status)),
         }
         if estimates:
             if span.start == 0:
@@ -144,6 +161,12 @@ def _transformed(layout: Layout, stored: Stored) -> Iterator[Part]:
             variables["estimated_phase"] = "diameter", found.phase
             variables["estimated_depth"] = "diameter", found.depth
         yield Part(at, span.start, len(intensity), variables)
+
+
+def _status(magnitude: NDArray[np.float64], level: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Tell which components (D, C) are above the rounding (D, 1) of their spectra."""
+    missing = np.where(np.isnan(magnitude), PhaseStatus.NO_SPECTRUM, PhaseStatus.BELOW_ROUNDING)
+    return np.where(magnitude > level, PhaseStatus.KNOWN, missing)
 
 
 @Stage

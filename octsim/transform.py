@@ -104,6 +104,20 @@ def fourier_components(intensity: Array, processing: Processing) -> NDArray[np.c
     return np.fft.rfft(prepared(intensity, processing), axis=-1)
 
 
+def rounding_level(intensity: Array, processing: Processing) -> Array:
+    r"""Magnitude below which a component of spectra (..., K) holds nothing but rounding, (..., 1).
+
+    .. math:: \epsilon \log_2 K \sum_j |w_j I_j|
+
+    The error of a fast Fourier transform grows with its \log_2 K stages (Higham 2002, §24.1); the
+    samples' own rounding, and that of the level that is subtracted, are as large as one of them.
+    """
+    shaped = np.abs(windowed(np.ascontiguousarray(intensity), processing.window))
+    stages = max(1.0, float(np.log2(intensity.shape[-1])))
+    level: Array = np.finfo(float).eps * stages * shaped.sum(axis=-1, keepdims=True)
+    return level
+
+
 def optical_depths(wavenumber: Array, samples: int | None = None) -> Array:
     """Optical depth nd (µm) at which cos(2ndk) falls on each component.
 

@@ -19,7 +19,7 @@ import xarray as xr
 from octsim.command import Parser
 from octsim.compare_command import tolerance
 from octsim.config import Cache
-from octsim.contrast import TOLERANCE, contrast
+from octsim.contrast import contrast
 from octsim.contrast_text import lines
 from octsim.datasets import read, write
 from octsim.errors import DatasetError, OctsimError, OctsimWarning
@@ -44,7 +44,10 @@ def main() -> int:
     )
     parser.add_argument("file", type=Path, help="a run's folder, its archive, or a dataset")
     parser.add_argument("folder", type=Path, help="where to make it; empty, or not there yet")
-    parser.add_argument("--tolerance", type=tolerance, default=TOLERANCE, help="%(default)s")
+    parser.add_argument(
+        "--tolerance", type=tolerance,
+        help="1e-12, or of another environment what the condition of each variable allows",
+    )  # fmt: skip
     parser.add_argument("--cores", type=_cores, default=2, help="%(default)s")
     parser.add_argument("--only", nargs="+", metavar="STAGE", help="some of the datasets")
     given = parser.parse_args()
