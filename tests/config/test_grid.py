@@ -10,10 +10,10 @@ import xarray as xr
 import octsim
 from octsim.base.errors import ConfigError, OctsimError
 from octsim.config.grid import axes, combinations, remarks, without_grid
-from octsim.datasets.axes import axis_name, dimension_name
 from octsim.config.load import load_config
 from octsim.config.messages import known_keys
 from octsim.config.models import Config
+from octsim.datasets.axes import axis_name, dimension_name
 from octsim.datasets.keys import stage_axes
 from octsim.datasets.reader import Stored
 from octsim.datasets.writer import write_stream
