@@ -5,10 +5,8 @@ The models are the one source: `config/schema.json` and `docs/config.md` are gen
 """
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
 from octsim.config.archive import ArchiveConfig
@@ -28,6 +26,10 @@ from octsim.config.fields import (
 from octsim.config.fields import key as _key
 from octsim.config.processing import Processing as Processing
 from octsim.config.units import Length
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 
 class RefractiveIndex(Section):
@@ -132,6 +134,9 @@ class FocusLawConfig(Section):
     )
 
 
+_Lengths = TypeVar("_Lengths", float, "NDArray[np.float64]")
+
+
 class FocusLine(Section):
     """A given focus law: focus = slope · diameter + intercept; slope 0 is a fixed focus."""
 
@@ -143,8 +148,8 @@ class FocusLine(Section):
         """Give the line of a fitted law: a `focus_law` dataset."""
         return cls.model_construct(slope=float(law["slope"]), intercept=float(law["intercept"]))
 
-    def at(self, diameter: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Give the focus for each diameter, both in µm."""
+    def at(self, diameter: _Lengths) -> _Lengths:
+        """Return the focus for each diameter, both in µm."""
         return self.slope * diameter + self.intercept
 
 

@@ -13,6 +13,7 @@ from octsim.config.units import (
     _PLAIN,
     _PREFIXED,
     PREFIXES,
+    Unit,
     find_unit,
     inverted,
     known_units,
@@ -112,9 +113,8 @@ def test_a_length_is_the_same_float_in_every_unit(number: int, power: int) -> No
 @pytest.mark.parametrize("unit", ["1/um", "1 / um", "rad/um", "um-1", "um^-1", "um**-1", "um -1"])
 def test_an_inverse_length_is_known_by_each_way_to_write_it(unit: str) -> None:
     assert inverted(unit) == "um"
-    known = find_unit(unit)
-    assert known == ("inverse length", 1)
-    assert find_unit("1/cm") == ("inverse length", Decimal("1e-4"))
+    assert find_unit(unit) == Unit("inverse length", Decimal(1))
+    assert find_unit("1/cm") == Unit("inverse length", Decimal("1e-4"))
     assert find_unit("1/s") is None
 
 
