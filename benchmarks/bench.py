@@ -23,13 +23,11 @@ from trees import NoCompilerError, scalar_tree, simd_tree
 import octsim
 from octsim.base.threads import each
 from octsim.datasets.files import write
+from octsim.instrument.build import detector_of, scene_of
 from octsim.instrument.cache import opened
-from octsim.instrument.instrument import tracer
+from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
-from octsim.optics.band import wavenumbers
 from octsim.optics.beam import vogel_beam
-from octsim.optics.detector import detector_of
-from octsim.optics.scene import neuron_on_glass
 from octsim.schemes.field_sum import intensity
 from octsim.tracing.tree import trace
 
@@ -61,8 +59,8 @@ def ratio(seconds: dict[str, list[float]], of: str, to: str) -> float:
 def trees() -> list[tuple[str, float, float]]:
     """Measure the ray tree: name, segments a second, speed of octsim's on one core over it."""
     config = octsim.load_config()
-    beam = vogel_beam(config.objective, config.tracing, config.scene.refractive_index.glass)
-    scene, detector, focus = neuron_on_glass(config.scene, 1.4), detector_of(config), 0.876
+    scene, detector, focus = scene_of(config, 1.4), detector_of(config), 0.876
+    beam = vogel_beam(config.tracing.rays, detector.objective_radius, detector.focus_distance)
     arguments = (scene, beam, detector, focus)
     octsim_tree = partial(trace, *arguments)
     octsim_name = "octsim, one core"
@@ -103,9 +101,10 @@ def trees() -> list[tuple[str, float, float]]:
 def spectrum_sum() -> tuple[float, float]:
     """Measure the sum over wavenumbers: speed over naive numpy, error over the peak."""
     config = octsim.load_config()
-    beam = vogel_beam(config.objective, config.tracing, 1.52)
-    found = trace(neuron_on_glass(config.scene, 1.4), beam, detector_of(config), 0.876)
-    k, path = wavenumbers(config.spectrum), found.optical_path_length
+    detector = detector_of(config)
+    beam = vogel_beam(config.tracing.rays, detector.objective_radius, detector.focus_distance)
+    found = trace(scene_of(config, 1.4), beam, detector, 0.876)
+    k, path = config.spectrum.wavenumbers(), found.optical_path_length
 
     def naive() -> object:
         return np.abs((found.amplitude * np.exp(1j * np.outer(k, path))).sum(axis=1)) ** 2
@@ -127,7 +126,7 @@ def point_from_cache() -> float:
     config = octsim.load_config()
     with tempfile.TemporaryDirectory() as folder, opened(Path(folder) / "points", 1) as cache:
         points = Points(cache)
-        kept, traced = points.tracer(config), tracer(config)
+        kept, traced = Instrument(config, points).light, Instrument(config).light
         kept(1.4, 0.876)
         points.keep()
         works: dict[str, Work] = {

@@ -16,11 +16,13 @@ from typing import Any
 from octsim.config.load import load_config
 from octsim.datasets.files import opened
 from octsim.datasets.reader import Stored
-from octsim.datasets.stage import Part, Stream
+from octsim.datasets.streams import Part, Stream
 from octsim.datasets.writer import write_stream
+from octsim.stages.detections import detections
+from octsim.stages.fourier import fourier
 from octsim.stages.paths import light_paths
-from octsim.stages.phase_slope import fourier, phase_slope
-from octsim.stages.sweep import detections, spectra
+from octsim.stages.phase_slope import phase_slope
+from octsim.stages.spectra import spectra
 from octsim.studies.tradeoff.measured_cost import apart
 
 COUNTS = ((10, 4), (25, 10), (25, 40))

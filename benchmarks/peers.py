@@ -17,9 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import octsim
+from octsim.instrument.build import detector_of, scene_of
 from octsim.optics.beam import Beam, vogel_beam
-from octsim.optics.detector import RIM, Detector, detector_of
-from octsim.optics.scene import Cylinder, Scene, neuron_on_glass
+from octsim.optics.detector import RIM, Detector
+from octsim.optics.scene import Cylinder, Scene
 from octsim.tracing.tree import trace
 
 ROOT = Path(__file__).parent.parent
@@ -112,11 +113,11 @@ def detected_of(returned: Rays, job: Job) -> int:
 
 def job_of(rays: int, gap: float | None = None) -> Job:
     """Make the scene and the beam of octsim's default config, with a gap in µm if it is given."""
-    config = octsim.load_config()
-    scene = config.scene if gap is None else config.scene.model_copy(update={"gap": gap})
-    tracing = config.tracing.model_copy(update={"rays": rays})
-    beam = vogel_beam(config.objective, tracing, scene.refractive_index.glass)
-    return Job(neuron_on_glass(scene, DIAMETER), beam, detector_of(config))
+    overlay = {} if gap is None else {"scene": {"gap": f"{gap} um"}}
+    config = octsim.load_config(overlay)
+    detector = detector_of(config)
+    beam = vogel_beam(rays, detector.objective_radius, detector.focus_distance)
+    return Job(scene_of(config, DIAMETER), beam, detector)
 
 
 def octsim_work(job: Job) -> Work:

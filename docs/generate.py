@@ -17,7 +17,7 @@ from spike_page import spike_page
 
 import octsim
 from octsim.config.models import Config
-from octsim.optics.detector import detector_radius
+from octsim.instrument.build import detector_of
 from octsim.studies.tradeoff.settings import CONVERGED_SAMPLES, FINER, reference
 
 DOCS = Path(__file__).parent
@@ -43,7 +43,7 @@ def run(core: str, focus: object = "law") -> list[str]:
     law = octsim.focus_law(config, octsim.gaussian_fits(config, octsim.focus_sweep(config, 2)))
     spectra = octsim.spectra(config, octsim.detections(config, law, 2))
     slopes = octsim.phase_slope(config, octsim.fourier(config, spectra))
-    return [f"{detector_radius(config):.3f}", *summary(law, slopes)]
+    return [f"{detector_of(config).radius:.3f}", *summary(law, slopes)]
 
 
 def keys(model: type[BaseModel], values: dict[str, object], prefix: str = "") -> list[list[str]]:

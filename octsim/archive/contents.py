@@ -13,7 +13,8 @@ from octsim.archive.run_folder import FIGURES, Run
 from octsim.base.environment import environment
 from octsim.base.provenance import LOCK, lock_file
 from octsim.config.models import Config
-from octsim.datasets.gallery import CAPTIONS, STAGES, TARGETS, figures_of
+from octsim.datasets.catalog import STAGES, TARGETS
+from octsim.datasets.gallery import CAPTIONS, drawn_with, figures_of
 from octsim.datasets.versions import printable, recorded_environment
 
 CONFIG = "config.yaml"
@@ -51,10 +52,10 @@ class Made(NamedTuple):
 def figures_expected(run: Run, config: Config) -> dict[str, tuple[str, ...]]:
     """Give the figures of a run and of the targets whose datasets it has, and their stages."""
     beside = {
-        figure: (target,)
-        for target, figures in TARGETS.items()
+        name: drawn.sources
+        for target in TARGETS
         if target in run.datasets
-        for figure in figures
+        for name, drawn in drawn_with(target).items()
     }
     return figures_of(config) | beside
 

@@ -9,8 +9,8 @@ from octsim.archive.run_folder import run_in
 from octsim.archive.verify import unpacked
 from octsim.base.errors import DatasetError
 from octsim.config.models import Config
-from octsim.datasets.catalog import keys_behind
 from octsim.datasets.files import opened
+from octsim.datasets.keys import keys_behind
 from octsim.datasets.versions import recorded_config
 
 

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from octsim.base.errors import DatasetError
 from octsim.config.models import Config
-from octsim.datasets.catalog import differing
+from octsim.datasets.catalog import STAGES, TARGETS
 from octsim.datasets.files import opened
-from octsim.datasets.gallery import STAGES, TARGETS
+from octsim.datasets.keys import differing
 from octsim.datasets.versions import recorded_config
 
 FIGURES = "figures"

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from octsim.base.errors import DatasetError
-from octsim.datasets.catalog import stage_axes
+from octsim.datasets.keys import stage_axes
 
 if TYPE_CHECKING:
     import xarray as xr

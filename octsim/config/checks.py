@@ -11,9 +11,8 @@ from octsim.config.fields import DECIMALS, Range
 from octsim.config.models import Config, FocusLine
 from octsim.config.units import format_length
 from octsim.optics.two_beams import aliasing_step
+from octsim.schemes.table import COUNTED_RAYS, SCHEMES
 
-STEEP = 0.92
-"""Numerical aperture over the index of water, above which the scheme paths can miss light."""
 # The two below are measured: `snakemake stability` compares the tracer with one of 50 digits, and
 # within them, but for single rays at an edge, no phase is off by more than 1e-9 rad.
 LARGEST_DIAMETER = 1e4
@@ -106,11 +105,12 @@ def require_possible(config: Config) -> None:
 
 def _steep_remarks(config: Config) -> Iterator[str]:
     aperture, water = config.objective.numerical_aperture, config.scene.refractive_index.water
-    if config.tracing.scheme == "paths" and STEEP * water < aperture:
+    scheme = SCHEMES[config.tracing.scheme]
+    if scheme.steepest * water < aperture:
         yield (
-            f"tracing.scheme: 'paths' with a numerical aperture of {aperture}, above {STEEP} of "
-            f"the index of water, {water}: light near grazing incidence can be missed, and the "
-            "error with it; compare with 'vogel'"
+            f"tracing.scheme: {scheme.name!r} with a numerical aperture of {aperture}, above "
+            f"{scheme.steepest} of the index of water, {water}: light near grazing incidence can "
+            f"be missed, and the error with it; compare with {COUNTED_RAYS.name!r}"
         )
 
 

@@ -8,9 +8,11 @@ from pydantic import ValidationError
 from octsim.base.errors import ConfigError
 from octsim.config.checks import require_possible
 from octsim.config.messages import explain
-from octsim.config.models import PRESETS, Config
+from octsim.config.models import Config
+from octsim.schemes.table import COUNTED_RAYS, LIGHT_PATHS, PRESETS
 
 _PRESET = "tracing.preset"
+_SET_BY_PRESETS = sorted({f"tracing.{key}" for preset in PRESETS.values() for key in preset})
 
 
 def part_of(data: Mapping[str, Any], key: str) -> Any:
@@ -41,7 +43,7 @@ def overlap(one: str, other: str) -> bool:
 def bears_on(key: str, *read: str) -> bool:
     """Tell whether a varied key sets any of some others, or parts of them."""
     # a preset stands for other keys
-    sets = (key, *(f"tracing.{name}" for name in PRESETS["draft"])) if key == _PRESET else (key,)
+    sets = (key, *_SET_BY_PRESETS) if key == _PRESET else (key,)
     return any(overlap(one, other) for one in sets for other in read)
 
 
@@ -122,13 +124,20 @@ def changed(config: Config, *overlays: Mapping[str, Any]) -> Config:
 
 
 def by_rays(config: Config, rays: int) -> Config:
-    """Return a config that counts rays."""
-    return changed(config, {"tracing": {"preset": None, "scheme": "vogel", "rays": rays}})
+    """Return a config that counts some number of rays."""
+    asked = {"preset": None, "scheme": COUNTED_RAYS.name, "rays": rays}
+    return changed(config, {"tracing": asked})
+
+
+def counting_rays(config: Config) -> Config:
+    """Return a config that counts as many rays as its key ``tracing.rays`` says."""
+    tracing = config.tracing.model_copy(update={"scheme": COUNTED_RAYS.name})
+    return config.model_copy(update={"tracing": tracing})
 
 
 def by_accuracy(config: Config, accuracy: float, **tracing: int) -> Config:
     """Return a config that integrates light paths to an accuracy."""
-    asked = {"preset": None, "scheme": "paths", "accuracy": accuracy}
+    asked = {"preset": None, "scheme": LIGHT_PATHS.name, "accuracy": accuracy}
     return changed(config, {"tracing": asked | tracing})
 
 

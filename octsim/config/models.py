@@ -26,10 +26,19 @@ from octsim.config.fields import (
 from octsim.config.fields import key as _key
 from octsim.config.processing import Processing as Processing
 from octsim.config.units import Length
+from octsim.optics.band import wavenumbers
+from octsim.schemes.table import COUNTED_RAYS, PRESETS, SCHEMES
 
 if TYPE_CHECKING:
+    from typing import TypeAlias
+
     import numpy as np
     from numpy.typing import NDArray
+
+    SchemeName: TypeAlias = str
+    PresetName: TypeAlias = str
+else:  # a scheme is a row of the table, and nothing more to be listed here
+    SchemeName, PresetName = Literal[tuple(SCHEMES)], Literal[tuple(PRESETS)]
 
 
 class RefractiveIndex(Section):
@@ -67,22 +76,14 @@ class DetectorConfig(Section):
     )
 
 
-PRESETS: Mapping[str, Mapping[str, Any]] = {
-    "draft": {"scheme": "paths", "accuracy": 3e-2},
-    "standard": {"scheme": "paths", "accuracy": 1e-4},
-    "reference": {"scheme": "paths", "accuracy": 1e-8},
-}
-"""Points of the trade of cost for accuracy: `snakemake tradeoff` measures them."""
-
-
 class Tracing(Section):
     """How rays are placed and how far each is followed."""
 
-    preset: Literal["draft", "standard", "reference"] | None = _key(
+    preset: PresetName | None = _key(
         None, "a named scheme and accuracy, for those that are not given beside it"
     )
-    scheme: Literal["vogel", "paths"] = _key(
-        "vogel", "the thesis's sunflower spiral, or each light path to a stated accuracy"
+    scheme: SchemeName = _key(
+        COUNTED_RAYS.name, "the thesis's sunflower spiral, or each light path to a stated accuracy"
     )
     accuracy: Annotated[Number, Field(ge=1e-12, le=0.1)] = _key(
         1e-4, "of the scheme paths: largest error of the intensity over the largest intensity"
@@ -110,6 +111,10 @@ class Spectrum(Section):
     samples: Annotated[int, Field(ge=2, le=1_000_000)] = _key(
         1000, "wavenumbers, evenly spaced, both ends included"
     )
+
+    def wavenumbers(self) -> "NDArray[np.float64]":
+        """Return the wavenumbers 2π/λ, evenly spaced and increasing, shape (K,), 1/µm."""
+        return wavenumbers(self.wavelength.min, self.wavelength.max, self.samples)
 
 
 class FocusScan(Section):

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from octsim.base.files import whole
 from octsim.datasets.files import CHUNK_CACHE, attributes
 from octsim.datasets.layout import Layout, filling
-from octsim.datasets.stage import Stream, pour
+from octsim.datasets.streams import Stream, pour
 
 _RAGGED_CHUNK = 8192  # values
 
@@ -32,7 +32,7 @@ class _File:
                 file[name][:] = variable.values
             else:
                 file[name].assignValue(variable.values)
-        file.setncatts(attributes(layout.stage, layout.config, layout.title, layout.module))
+        file.setncatts(attributes(layout.stage, layout.config, layout.title))
 
     def create(
         self,

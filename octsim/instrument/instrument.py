@@ -1,58 +1,33 @@
 """A config's instrument at work: a diameter and a focus in, detected light and intensity out."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.base.provenance import source_digest
+from octsim.base.threads import each
+from octsim.config.derive import parts_of
 from octsim.config.models import Config
-from octsim.optics.band import wavenumbers
-from octsim.schemes.field_sum import sum_paths, sum_rays
-from octsim.schemes.light import AccuracyStatus, Light
-from octsim.schemes.paths.integrate import path_tracer
-from octsim.schemes.vogel import spiral_tracer
-
-Tracer = Callable[[float, float], Light]
-"""Gives the detected light of a diameter and a focus, µm."""
+from octsim.config.scheme import light_keys, options_of, scheme_of
+from octsim.instrument.build import optics_of, scene_of
+from octsim.instrument.point_keys import instrument_key
+from octsim.instrument.points import Points
+from octsim.schemes.field_sum import spectrum_of
+from octsim.schemes.light import AccuracyStatus, Light, LightAt
 
 
-def tracer(config: Config) -> Tracer:
-    """Make the function of diameter and focus (µm) that traces a config's instrument."""
-    return spiral_tracer(config) if config.tracing.scheme == "vogel" else path_tracer(config)
+class Spectrum(NamedTuple):
+    """The intensity of one point over the wavenumbers."""
 
-
-def summer(config: Config) -> Callable[[Light], tuple[NDArray[np.float64], float]]:
-    """Make the function that sums a config's light to a spectrum, and estimates its error."""
-    k, accuracy = wavenumbers(config.spectrum), config.tracing.accuracy
-    if config.tracing.scheme == "vogel":
-        return lambda light: sum_rays(
-            light.amplitude, light.rough_amplitude, light.optical_path_length, k
-        )
-    return lambda light: sum_paths(
-        light.path,
-        light.amplitude,
-        light.rough_amplitude,
-        light.optical_path_length,
-        light.missing,
-        k,
-        accuracy,
-    )
-
-
-Spectrometer = Callable[[float, float], tuple[NDArray[np.float64], float, AccuracyStatus]]
-"""Gives spectrum (K,), its error and status of a diameter and a focus, µm."""
-
-
-def spectrometer(config: Config) -> Spectrometer:
-    """Make the function of diameter and focus (µm) that traces and sums a config's spectrum."""
-    trace_at, sum_light = tracer(config), summer(config)
-
-    def at(diameter: float, focus: float) -> tuple[NDArray[np.float64], float, AccuracyStatus]:
-        light = trace_at(diameter, focus)
-        return *sum_light(light), light.status
-
-    return at
+    intensity: NDArray[np.float64]
+    """(K,); 1 is all of the launched light in phase."""
+    error: float
+    """Estimate of max |ΔI| / max I."""
+    status: AccuracyStatus
+    """Whether that is as asked."""
 
 
 class Brightness(NamedTuple):
@@ -66,14 +41,73 @@ class Brightness(NamedTuple):
     """Whether that is as asked."""
 
 
-def meter(config: Config) -> Callable[[Light], Brightness]:
-    """Make the function that gives the mean intensity of a config's light."""
-    sum_light = summer(config)
+class Instrument:
+    """What a config describes: its scene, objective, detector and scheme.
 
-    def measure(light: Light) -> Brightness:
-        spectrum, error = sum_light(light)
-        mean = float(spectrum.mean())
-        relative = error * float(spectrum.max()) / mean if mean > 0 else error
-        return Brightness(mean, relative, light.status)
+    It can be used from several threads.
 
-    return measure
+    Parameters
+    ----------
+    config : Config
+        Without a grid, or one of its combinations.
+    points : Points, optional
+        Where light that was found before is kept; without, all is found anew.
+    """
+
+    def __init__(self, config: Config, points: Points | None = None) -> None:
+        self.config, self.scheme = config, scheme_of(config)
+        self.wavenumber = config.spectrum.wavenumbers()
+        """Evenly spaced wavenumbers, (K,), 1/µm."""
+        self._points = points
+        self._options = options_of(config)
+
+    def nominal_depth(self, diameter: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the optical depth n_neuron · d of neurons' far sides, µm, for diameters, µm."""
+        return self.config.scene.refractive_index.neuron * diameter
+
+    def light(self, diameter: float, focus: float) -> Light:
+        """Return the detected light of a diameter at a focus, both µm."""
+        return self._light_at(diameter, focus)
+
+    def sum(self, light: Light) -> Spectrum:
+        """Sum light of this instrument to its spectrum."""
+        field = self.scheme.field(light, self.wavenumber, self._options)
+        return Spectrum(*spectrum_of(field), light.status)
+
+    def spectrum(self, diameter: float, focus: float) -> Spectrum:
+        """Return the spectrum of a diameter at a focus, both µm."""
+        return self.sum(self.light(diameter, focus))
+
+    def spectra(
+        self, diameters: Iterable[float], foci: Iterable[float], threads: int = 1
+    ) -> NDArray[np.float64]:
+        """Return the spectra (D, K) of diameters and their foci (D,), µm."""
+        points = zip(np.asarray(diameters).tolist(), np.asarray(foci).tolist(), strict=True)
+        return np.stack(list(each(lambda at: self.spectrum(*at).intensity, points, threads)))
+
+    def brightness(self, light: Light) -> Brightness:
+        """Return the intensity of light of this instrument, as a mean over the band."""
+        intensity, error, status = self.sum(light)
+        mean = float(intensity.mean())
+        relative = error * float(intensity.max()) / mean if mean > 0 else error
+        return Brightness(mean, relative, status)
+
+    @cached_property
+    def _tracer(self) -> LightAt:
+        return self.scheme.tracer(optics_of(self.config), self._options)
+
+    def _find(self, diameter: float, focus: float) -> Light:
+        return self._tracer(scene_of(self.config, diameter), focus)
+
+    @cached_property
+    def _light_at(self) -> Callable[[float, float], Light]:
+        if self._points is None:
+            return self._find
+        return self._points.keeping(self._find, self._key, self.scheme.rate_name(self._options))
+
+    def _key(self) -> bytes:
+        read = parts_of(self.config.to_dict(), *light_keys(self.config))
+        code = source_digest(
+            self.scheme.module, "octsim.instrument.build", "octsim.instrument.point_entries"
+        )
+        return instrument_key(read, code)

@@ -2,21 +2,18 @@
 
 import threading
 import time
-from functools import cache
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
-from octsim.base.provenance import source_digest
-from octsim.config.derive import parts_of
-from octsim.config.models import Config
-from octsim.datasets.catalog import instrument
-from octsim.instrument.cache import PointCache
-from octsim.instrument.instrument import Tracer, tracer
 from octsim.instrument.point_entries import pack, unpack
-from octsim.instrument.point_keys import instrument_key, point_key
+from octsim.instrument.point_keys import point_key
 from octsim.schemes.light import Light
-from octsim.stages.cost_estimate import rate_name
 
-_CODE = {"vogel": "octsim.schemes.vogel", "paths": "octsim.schemes.paths.integrate"}
-"""Modules that a scheme's points follow from."""
+if TYPE_CHECKING:
+    from octsim.instrument.cache import PointCache  # it saves time and decides no result
+
+LightAtPoint = Callable[[float, float], Light]
+"""From diameter and focus, µm, to detected light."""
 _KEEP_AFTER = 1.0  # s, for which a killed run can have traced in vain
 _KEEP_BYTES = 16_000_000
 _NOT_TIMED = 8  # of the first points some may wait for code to be compiled
@@ -31,41 +28,49 @@ class Points:
         Where traced points are kept.
     """
 
-    def __init__(self, cache: PointCache | None = None) -> None:
+    def __init__(self, cache: "PointCache | None" = None) -> None:
         self._cache, self._lock = cache, threading.Lock()
         self._new: list[tuple[bytes, bytes]] = []
         self._bytes, self._kept = 0, time.monotonic()
         self._timed: dict[str, list[float]] = {}  # points, s and bytes, of a rate's name
         self.traced, self.from_cache = 0, 0
 
-    def tracer(self, config: Config) -> Tracer:
-        """Make the function of diameter and focus (µm) that gives a config's detected light."""
+    def keeping(self, find: LightAtPoint, key: Callable[[], bytes], rate: str) -> LightAtPoint:
+        """Return a function as `find` that takes light from where it is kept, or keeps it.
 
-        @cache  # a beam is only placed where it is needed
-        def trace_at() -> Tracer:
-            return tracer(config)
-
-        if self._cache is None:
-            return lambda diameter, focus: self._trace(trace_at(), diameter, focus)
-        code = source_digest(_CODE[config.tracing.scheme], "octsim.instrument.point_entries")
-        key_of = instrument_key(parts_of(config.to_dict(), *instrument(config)), code)
-        stored = self._cache
+        Parameters
+        ----------
+        find : callable
+            From diameter and focus, µm, to light.
+        key : callable
+            Returns the key of the instrument, by `instrument_key`; asked for where light is kept.
+        rate : str
+            Name of the points that take about the same.
+        """
+        cache = self._cache
+        if cache is None:
+            return lambda diameter, focus: self._counted(find(diameter, focus))
+        instrument = key()
 
         def at(diameter: float, focus: float) -> Light:
-            key = point_key(key_of, diameter, focus)
-            body = stored.get(key)
+            key = point_key(instrument, diameter, focus)
+            body = cache.get(key)
             if body is not None:
                 with self._lock:
                     self.from_cache += 1
                 return unpack(body)
             begin = time.thread_time()
-            light = self._trace(trace_at(), diameter, focus)
+            light = self._counted(find(diameter, focus))
             body = pack(light)
             self._keep(key, body)
-            self._time(rate_name(config), time.thread_time() - begin, len(body))
+            self._time(rate, time.thread_time() - begin, len(body))
             return light
 
         return at
+
+    def counts(self) -> dict[str, int]:
+        """Return how many points were found anew, and how many were kept from before."""
+        return {"points_traced": self.traced, "points_from_cache": self.from_cache}
 
     def keep(self) -> None:
         """Write what was traced since the last time to the cache."""
@@ -78,8 +83,7 @@ class Points:
             for name, (points, seconds, size) in timed.items():
                 self._cache.record(name, int(points), seconds, int(size))
 
-    def _trace(self, trace_at: Tracer, diameter: float, focus: float) -> Light:
-        light = trace_at(diameter, focus)
+    def _counted(self, light: Light) -> Light:
         with self._lock:
             self.traced += 1
         return light

@@ -7,8 +7,6 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from octsim.config.models import Objective, Tracing
-
 # The golden ratio (√5 − 1) / 2 as a sum. A multiple of the first is exact, so that whole turns come
 # off it without rounding: the ten millionth ray is as well placed as the first.
 _COARSE, _FINE = 41475558 / 2**26, 1.3387117138243649e-08
@@ -32,14 +30,14 @@ class Beam(NamedTuple):
     """Number of each ray, (N,), whatever the order in which they stand here."""
 
 
-def aperture_radius(objective: Objective, n_glass: float) -> float:
-    """Radius of the objective's disk, R = focus_distance · tan(asin(NA / n_glass)), in µm.
+def aperture_radius(numerical_aperture: float, index: float, focus_distance: float) -> float:
+    """Return the radius of the objective's disk, focus_distance · tan(asin(NA / n)), in µm.
 
-    As NA / √((n − NA)(n + NA)) the tangent keeps its digits where NA is close to n.
+    As NA / √((n − NA)(n + NA)) the tangent keeps its digits where NA is close to the index n of the
+    medium that the objective lies in.
     """
-    aperture = objective.numerical_aperture
-    cosine = math.sqrt((n_glass - aperture) * (n_glass + aperture))
-    return objective.focus_distance * (aperture / cosine)
+    cosine = math.sqrt((index - numerical_aperture) * (index + numerical_aperture))
+    return focus_distance * (numerical_aperture / cosine)
 
 
 def vogel_spiral(num: int, radius: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -80,12 +78,20 @@ def aim(
     return -x / length, -y / length, focus_distance / length
 
 
-def vogel_beam(objective: Objective, tracing: Tracing, n_glass: float) -> Beam:
-    """Make the beam of the thesis: a Vogel spiral on the objective, each ray of amplitude 1/N."""
-    x, y = vogel_spiral(tracing.rays, aperture_radius(objective, n_glass))
+def vogel_beam(rays: int, radius: float, focus_distance: float) -> Beam:
+    """Return the beam of the thesis: a Vogel spiral on the objective, each ray of amplitude 1/N.
+
+    Parameters
+    ----------
+    rays : int
+        Number of rays, N.
+    radius, focus_distance : float
+        Of the objective's disk, and from it to the focus, µm.
+    """
+    x, y = vogel_spiral(rays, radius)
     number = neighbourly_order(x, y)
-    vx, vy, vz = aim(x[number], y[number], objective.focus_distance)
-    return Beam(vx, vy, vz, np.full(tracing.rays, 1 / tracing.rays), number)
+    vx, vy, vz = aim(x[number], y[number], focus_distance)
+    return Beam(vx, vy, vz, np.full(rays, 1 / rays), number)
 
 
 def neighbourly_order(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 from numba.extending import register_jitable
 
-from octsim.config.models import Config
 from octsim.optics.beam import aperture_radius
 from octsim.optics.interface import Vector
 
@@ -46,21 +45,37 @@ class Detector(NamedTuple):
     """f = focus_distance · M / (M + 1)."""
 
 
-def detector_radius(config: Config) -> float:
-    """Radius R_det of the fibre core's image at the focus, core_diameter / (2 M), in µm."""
-    return config.detector.core_diameter / (2 * config.objective.magnification)
+def detector_radius(core_diameter: float, magnification: float) -> float:
+    """Return the radius R_det of the fibre core's image at the focus, core / (2 M), in µm."""
+    return core_diameter / (2 * magnification)
 
 
-def detector_of(config: Config) -> Detector:
-    """Make the detector that a config describes."""
-    objective = config.objective
-    magnification = objective.magnification
+def fibre_detector(
+    numerical_aperture: float,
+    index: float,
+    focus_distance: float,
+    magnification: float,
+    core_diameter: float,
+) -> Detector:
+    """Return an objective that images the focal plane onto a fibre's core (thesis §4.4).
+
+    Parameters
+    ----------
+    numerical_aperture, index : float
+        Of the objective, and of the medium that it lies in.
+    focus_distance : float
+        From the objective to the focus, µm.
+    magnification : float
+        From the object to the fibre.
+    core_diameter : float
+        Of the fibre, µm.
+    """
     return Detector(
-        objective_radius=aperture_radius(objective, config.scene.refractive_index.glass),
-        focus_distance=objective.focus_distance,
-        radius=detector_radius(config),
+        objective_radius=aperture_radius(numerical_aperture, index, focus_distance),
+        focus_distance=focus_distance,
+        radius=detector_radius(core_diameter, magnification),
         magnification=magnification,
-        focal_length=objective.focus_distance * magnification / (magnification + 1),
+        focal_length=focus_distance * magnification / (magnification + 1),
     )
 
 

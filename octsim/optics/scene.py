@@ -3,8 +3,6 @@
 from dataclasses import dataclass
 from enum import IntEnum
 
-from octsim.config.models import SceneConfig
-
 
 class Medium(IntEnum):
     """A region of one refractive index; the objective lies in the first."""
@@ -42,17 +40,26 @@ class Scene:
     surfaces: tuple[Plane | Cylinder, ...]
 
 
-def neuron_on_glass(config: SceneConfig, diameter: float) -> Scene:
-    """Lay a neuron of a diameter (µm) along y, a gap above the glass–water plane z = 0."""
-    index = config.refractive_index
+def neuron_on_glass(
+    glass: float, water: float, neuron: float, gap: float, diameter: float
+) -> Scene:
+    """Return a neuron along y in water, a gap above the glass–water plane z = 0.
+
+    Parameters
+    ----------
+    glass, water, neuron : float
+        Refractive indices.
+    gap, diameter : float
+        Of the neuron, µm.
+    """
     radius = diameter / 2
     return Scene(
-        refractive_index=(index.glass, index.water, index.neuron),
+        refractive_index=(glass, water, neuron),
         surfaces=(
             Plane(height=0.0, below=Medium.GLASS, above=Medium.WATER),
             Cylinder(
                 x=0.0,
-                z=config.gap + radius,
+                z=gap + radius,
                 radius=radius,
                 inside=Medium.NEURON,
                 outside=Medium.WATER,

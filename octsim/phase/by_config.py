@@ -9,7 +9,6 @@ import xarray as xr
 from octsim.base.errors import ConfigError
 from octsim.config.models import Config
 from octsim.config.processing import Processing
-from octsim.optics.band import wavenumbers
 from octsim.optics.two_beams import predicted_phase_slope
 from octsim.phase.estimators import estimate
 from octsim.phase.estimators.estimate import Array, Estimate
@@ -40,7 +39,7 @@ def estimator_of(config: Config, foci: Array) -> EstimatorOf:
     foci : ndarray
         Foci of all of the sweep's diameters, µm; NaN where there is no law.
     """
-    processing, k = config.processing, wavenumbers(config.spectrum)
+    processing, k = config.processing, config.spectrum.wavenumbers()
     n_neuron = config.scene.refractive_index.neuron
     if processing.estimator == "fft" or np.isnan(foci).any():
         return lambda _, diameter: Estimate(*np.full((2, diameter.size), np.nan))

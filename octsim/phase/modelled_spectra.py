@@ -5,7 +5,7 @@ import numpy as np
 from octsim.base.threads import each
 from octsim.config.derive import by_accuracy
 from octsim.config.models import Config
-from octsim.instrument.instrument import spectrometer
+from octsim.instrument.instrument import Instrument
 from octsim.phase.estimators.estimate import Array
 from octsim.phase.estimators.likelihood import Model
 
@@ -18,7 +18,7 @@ _BEYOND = 0.1  # µm, that a diameter may seem to be outside the sweep
 def modelled(config: Config, diameters: Array, foci: Array, threads: int = 1) -> Model:
     """Trace the spectra of a config's scene by light paths, for diameters and foci (M,) in µm."""
     exact = by_accuracy(config, MODEL_ACCURACY)
-    look = spectrometer(exact)
+    look = Instrument(exact).spectrum
     points = zip(diameters.tolist(), foci.tolist(), strict=True)
     spectra = list(each(lambda point: look(*point)[0], points, threads))
     return Model(diameters, np.stack(spectra))

@@ -7,6 +7,7 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.base.compiled import compiled
+from octsim.schemes.light import Field
 
 # A phasor is set anew after so many steps, so that rounding does not add up over long spectra.
 _STRETCH = 128
@@ -91,36 +92,38 @@ def intensity(
     ndarray, shape (K,)
         Intensity; 1 is all of the launched light in phase.
     """
-    total = field(amplitude, optical_path_length, wavenumber)
-    squared: NDArray[np.float64] = total.real * total.real + total.imag * total.imag
+    return intensity_of(field(amplitude, optical_path_length, wavenumber))
+
+
+def intensity_of(values: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Return the intensity |E|² of a field, (K,)."""
+    squared: NDArray[np.float64] = values.real * values.real + values.imag * values.imag
     return squared
 
 
-def sum_rays(
+def spectrum_of(field: Field) -> tuple[NDArray[np.float64], float]:
+    """Return the intensity of a field, (K,), and the estimate of max |ΔI| / max I."""
+    squared = intensity_of(field.values)
+    return squared, relative_error(math.sqrt(float(squared.max())), field.error)
+
+
+def field_of_rays(
     amplitude: NDArray[np.float64],
     rough_amplitude: NDArray[np.float64],
     optical_path_length: NDArray[np.float64],
     wavenumber: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], float]:
-    """Sum rays one by one to a spectrum, and estimate its error from a rougher rule.
+) -> Field:
+    """Sum rays one by one to a field, and estimate its error from a rougher rule.
 
     Parameters are those of `intensity`, with the rougher amplitudes, shape (D,).
-
-    Returns
-    -------
-    intensity : ndarray, shape (K,)
-        The spectrum.
-    error : float
-        Estimate of max |ΔI| / max I.
     """
-    spectrum = intensity(amplitude, optical_path_length, wavenumber)
+    values = field(amplitude, optical_path_length, wavenumber)
     every = max(1, wavenumber.size // _SPARSE)
     sparse = wavenumber[::every]
     step = (sparse[-1] - sparse[0]) / max(sparse.size - 1, 1)
     off = rough_amplitude - amplitude
     real, imaginary = _field(off, optical_path_length, sparse[0], step, sparse.size)
-    largest = math.sqrt(float(spectrum.max()))
-    return spectrum, relative_error(largest, float(np.hypot(real, imaginary).max()))
+    return Field(values, float(np.hypot(real, imaginary).max()))
 
 
 @register_jitable
@@ -240,7 +243,7 @@ def _path_fields(
     return real, imaginary, error
 
 
-def sum_paths(
+def field_of_paths(
     path: NDArray[np.int64],
     amplitude: NDArray[np.float64],
     rough_amplitude: NDArray[np.float64],
@@ -248,8 +251,8 @@ def sum_paths(
     missing: float,
     wavenumber: NDArray[np.float64],
     accuracy: float,
-) -> tuple[NDArray[np.float64], float]:
-    r"""Sum light paths to a spectrum, each interpolated in k about its mean path.
+) -> Field:
+    r"""Sum light paths to a field, each interpolated in k about its mean path.
 
     .. math:: E(k) = \sum_p e^{ik\bar\Lambda_p} \sum_{j \in p} E_j e^{ik(\Lambda_j - \bar\Lambda_p)}
 
@@ -261,20 +264,13 @@ def sum_paths(
     path : ndarray, shape (D,)
         Code of each ray's path; the rays of a path stand together.
     amplitude, rough_amplitude, optical_path_length : ndarray, shape (D,)
-        As in `sum_rays`.
+        As in `field_of_rays`.
     missing : float
         Field that was left out.
     wavenumber : ndarray, shape (K,)
         Evenly spaced wavenumbers, 1/µm.
     accuracy : float
         Of which the interpolation may use a hundredth.
-
-    Returns
-    -------
-    intensity : ndarray, shape (K,)
-        The spectrum.
-    error : float
-        Estimate of max |ΔI| / max I.
     """
     first_ray = np.append(np.flatnonzero(np.diff(path, prepend=-1)), path.size)
     num = wavenumber.size
@@ -284,8 +280,7 @@ def sum_paths(
         first_ray, amplitude, rough_amplitude, optical_path_length, wavenumber[0], step, num,
         tolerance,
     )  # fmt: skip
-    squared = real * real + imaginary * imaginary
-    return squared, relative_error(math.sqrt(float(squared.max())), error + missing)
+    return Field(real + 1j * imaginary, error + missing)
 
 
 def _scale(first_ray: NDArray[np.int64], amplitude: NDArray[np.float64]) -> float:

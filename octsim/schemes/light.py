@@ -1,10 +1,14 @@
-"""Detected light: weighted rays whose fields sum to the detector's, and how sure that is."""
+"""The light of one point: weighted rays whose fields add up, and how sure their sum is."""
 
+from collections.abc import Callable, Mapping
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from octsim.optics.detector import Detector
+from octsim.optics.scene import Scene
 
 
 class AccuracyStatus(IntEnum):
@@ -29,7 +33,7 @@ class Light(NamedTuple):
     """Weighted rays that reach the detector, D of them, always in the same order."""
 
     path: NDArray[np.int64]
-    """Code of the light path, (D,); `octsim.tracing.follow.path_name` reads it."""
+    """Code of the light path, (D,); `octsim.tracing.light_paths.path_name` reads it."""
     amplitude: NDArray[np.float64]
     """Amplitude times weight, (D,)."""
     rough_amplitude: NDArray[np.float64]
@@ -43,3 +47,29 @@ class Light(NamedTuple):
     status: AccuracyStatus
     outcomes: NDArray[np.int64] | None = None
     """How often each `octsim.optics.detector.Outcome` came about, (7,), where rays are counted."""
+
+
+class Field(NamedTuple):
+    """The detected field over the wavenumbers, and how sure it is."""
+
+    values: NDArray[np.complex128]
+    """Complex field, (K,)."""
+    error: float
+    """Estimate of its error, as a magnitude; the largest over the band."""
+
+
+class Optics(NamedTuple):
+    """What an instrument is made of besides its scene: the same for every scheme."""
+
+    detector: Detector
+    """Objective and fibre."""
+    band: tuple[float, float]
+    """Smallest and largest wavenumber, 1/µm."""
+    max_intersections: int
+    """Surfaces that one ray may meet."""
+
+
+Options = Mapping[str, Any]
+"""Values of a scheme's own keys of the config's section ``tracing``, by their names there."""
+LightAt = Callable[[Scene, float], Light]
+"""Returns the detected light of a scene, for a height of the focus, µm."""

@@ -1,38 +1,40 @@
 """The scheme vogel: the thesis's spiral of rays, each followed through the whole tree."""
 
-from collections.abc import Callable
-
 import numpy as np
+from numpy.typing import NDArray
 
-from octsim.config.models import Config
 from octsim.optics.beam import vogel_beam
-from octsim.optics.detector import detector_of
-from octsim.optics.scene import neuron_on_glass
-from octsim.schemes.light import AccuracyStatus, Light
-from octsim.tracing.tree import Detections, trace
+from octsim.optics.scene import Scene
+from octsim.schemes.field_sum import field_of_rays
+from octsim.schemes.light import (
+    AccuracyStatus,
+    Field,
+    Light,
+    LightAt,
+    Optics,
+    Options,
+)
+from octsim.tracing.tree import trace
 
 
-def vogel_tracer(config: Config) -> Callable[[float, float], Detections]:
-    """Make the function of diameter and focus (µm) that traces the thesis's spiral of rays."""
-    beam = vogel_beam(config.objective, config.tracing, config.scene.refractive_index.glass)
-    detector, tracing = detector_of(config), config.tracing
-
-    def at(diameter: float, focus: float) -> Detections:
-        scene = neuron_on_glass(config.scene, diameter)
-        return trace(scene, beam, detector, focus, tracing.max_intersections, tracing.min_amplitude)
-
-    return at
-
-
-def spiral_tracer(config: Config) -> Callable[[float, float], Light]:
-    """Make the function of diameter and focus (µm) that gives the spiral's detected light.
+def tracer(optics: Optics, options: Options) -> LightAt:
+    """Return the function of scene and focus (µm) that traces the spiral.
 
     The rougher rule is every second ray: a spiral of half the rays.
-    """
-    trace_at = vogel_tracer(config)
 
-    def at(diameter: float, focus: float) -> Light:
-        found = trace_at(diameter, focus)
+    Parameters
+    ----------
+    optics : Optics
+    options : mapping
+        ``rays``, their number, and ``min_amplitude``, below which a ray is dropped.
+    """
+    detector = optics.detector
+    beam = vogel_beam(options["rays"], detector.objective_radius, detector.focus_distance)
+
+    def light_at(scene: Scene, focus: float) -> Light:
+        found = trace(
+            scene, beam, detector, focus, optics.max_intersections, options["min_amplitude"]
+        )
         return Light(
             found.path,
             found.amplitude,
@@ -44,4 +46,11 @@ def spiral_tracer(config: Config) -> Callable[[float, float], Light]:
             found.outcomes,
         )
 
-    return at
+    return light_at
+
+
+def field(light: Light, wavenumber: NDArray[np.float64], _options: Options) -> Field:
+    """Return the field of the detected rays, summed one by one."""
+    return field_of_rays(
+        light.amplitude, light.rough_amplitude, light.optical_path_length, wavenumber
+    )

@@ -8,62 +8,26 @@ from pathlib import Path
 from typing import NamedTuple
 
 from octsim.base.errors import ConfigError
+from octsim.config.derive import counting_rays
 from octsim.config.grid import axes, combinations
 from octsim.config.models import Config
-from octsim.datasets.catalog import keys_behind
+from octsim.config.scheme import options_of, scheme_of
+from octsim.datasets.keys import keys_behind
 from octsim.instrument.cache import opened
 from octsim.instrument.cacheplace import cache_file
+from octsim.schemes.cost import PointCost
+from octsim.stages.workload import point_cost
 
-_RAY_BYTES = 32  # of the four numbers that are kept of a detected ray
-_PATHS = {"vogel": 40, "paths": 12}  # that a sweep has, about
 _SUMMING = 1e-7  # s a sample, of summing, transforming and differentiating a spectrum
 _JOB_BYTES = 3e8  # of a process with its libraries, compiled code and blocks
-_RAY_MEMORY = 600.0  # bytes, of each ray of a spiral that two threads trace
 _SAMPLE_MEMORY = 1000.0  # bytes, of each sample of the spectra in a block
 _ENOUGH = 50  # points, to know what one takes
 _SHORT = 60.0  # s; of what takes less nothing needs to be said
-_BLOCK_BYTES = 16e6
-_BLOCK_SECONDS = 2.0
-_MOST_POINTS = 512
-
-
-def points_per_block(bytes_per_point: float, seconds_per_point: float = 0.0) -> int:
-    """Give how many points are worked on between two writes: by memory and by time, at least one.
-
-    It follows from the config alone, so that the same run gives the same file.
-    """
-    seconds = max(seconds_per_point, _BLOCK_SECONDS / _MOST_POINTS)
-    most = min(_BLOCK_BYTES / bytes_per_point, _BLOCK_SECONDS / seconds, _MOST_POINTS)
-    return max(1, int(most))
-
-
-class PointCost(NamedTuple):
-    """What a point takes."""
-
-    size: float
-    """Bytes of its light."""
-    seconds: float
-    """Processor time to trace it."""
-
-
-def point_cost(config: Config) -> PointCost:
-    """Give what a point of a plain config takes to trace.
-
-    These rates were measured on one machine (`snakemake tradeoff`); what they decide, the size of
-    blocks, is to be the same on all.
-    """
-    if config.tracing.scheme == "vogel":
-        rays = config.tracing.rays
-        return PointCost(_RAY_BYTES * (1 + 0.18 * rays), 1.3e-4 + 8.8e-7 * rays)
-    digits = -math.log10(config.tracing.accuracy)
-    return PointCost(_RAY_BYTES * 45 * 10 ** (0.18 * digits), 4.7e-4 * 10 ** (0.145 * digits))
 
 
 def rate_name(config: Config) -> str:
-    """Name the tracing of a config: points of a name take about the same."""
-    tracing = config.tracing
-    paths = tracing.scheme == "paths"
-    return f"{tracing.scheme} {tracing.accuracy if paths else tracing.rays}"
+    """Name the points of a plain config: those of a name take about the same."""
+    return scheme_of(config).rate_name(options_of(config))
 
 
 class Cost(NamedTuple):
@@ -118,7 +82,7 @@ class Estimate(NamedTuple):
         )
 
 
-def estimate(config: Config, measured: Callable[[str], PointCost | None]) -> Estimate:
+def estimate(config: Config, measured: Callable[[str, PointCost], PointCost]) -> Estimate:
     """Estimate what a run takes.
 
     Parameters
@@ -126,8 +90,8 @@ def estimate(config: Config, measured: Callable[[str], PointCost | None]) -> Est
     config : Config
         The run.
     measured : callable
-        Gives the measured cost of a point of a `rate_name`, where there is one; else
-        `point_cost` is taken.
+        Returns the measured cost of a point of a `rate_name`, where there is one, else the
+        scheme's own, which it is given too.
     """
 
     def over(stage: str, cost: Callable[[Config], Cost]) -> Cost:
@@ -135,22 +99,19 @@ def estimate(config: Config, measured: Callable[[str], PointCost | None]) -> Est
         return functools.reduce(Cost.and_also, every, Cost())
 
     def rate(of: Config) -> PointCost:
-        return measured(rate_name(of)) or point_cost(of)
+        return measured(rate_name(of), point_cost(of))
 
     def traced(of: Config, count: int, *, summed: bool) -> Cost:
-        seconds = rate(of).seconds
+        cost = rate(of)
         sums = _SUMMING * of.spectrum.samples if summed else 0.0
-        rays = of.tracing.rays if of.tracing.scheme == "vogel" else 0
-        return Cost(count, count * (seconds + sums), 0.0, _JOB_BYTES + _RAY_MEMORY * rays)
+        return Cost(count, count * (cost.seconds + sums), 0.0, _JOB_BYTES + cost.memory)
 
     def scan(of: Config) -> Cost:
         count = of.focus_scan.focus.num
         cost = traced(of, count, summed=True)
-        if of.tracing.scheme == "vogel":
+        if scheme_of(of).counts_rays:
             return cost
-        tracing = of.tracing.model_copy(update={"scheme": "vogel"})
-        spiral = of.model_copy(update={"tracing": tracing})
-        return cost.and_also(traced(spiral, count, summed=False))
+        return cost.and_also(traced(counting_rays(of), count, summed=False))
 
     def sweep(of: Config) -> Cost:
         count = of.focus_law.diameters.num * of.focus_law.fraction.num
@@ -158,7 +119,7 @@ def estimate(config: Config, measured: Callable[[str], PointCost | None]) -> Est
 
     def detected(of: Config) -> Cost:
         count = of.sweep.diameters.num
-        disk = count * (rate(of).size + 40 * _PATHS[of.tracing.scheme])
+        disk = count * (rate(of).size + 40 * rate(of).paths)
         return traced(of, count, summed=False)._replace(disk_bytes=disk)
 
     def processed(each: float, bytes_each: float) -> Callable[[Config], Cost]:
@@ -191,16 +152,17 @@ def expected(config: Config) -> Estimate:
     try:
         file = cache_file(config.cache.file)
     except ConfigError:  # what is set for a cluster's jobs need not be where they are sent from
-        return estimate(config, lambda _: None)
+        return estimate(config, lambda _, typical: typical)
     if not file.exists():
-        return estimate(config, lambda _: None)
+        return estimate(config, lambda _, typical: typical)
     with opened(file, config.cache.gigabytes) as cache:
 
-        def measured(name: str) -> PointCost | None:
+        def measured(name: str, typical: PointCost) -> PointCost:
             rate = cache.rates(name)
             if rate is None or rate.points < _ENOUGH:
-                return None
-            return PointCost(rate.bytes / rate.points, rate.cpu_seconds / rate.points)
+                return typical
+            size, seconds = rate.bytes / rate.points, rate.cpu_seconds / rate.points
+            return typical._replace(size=size, seconds=seconds)
 
         return estimate(config, functools.cache(measured))
 

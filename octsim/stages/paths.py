@@ -11,11 +11,10 @@ from octsim.base.compiled import compiled
 from octsim.config.models import Config
 from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.reader import Stored
-from octsim.datasets.stage import Part, Stage, Stream
-from octsim.optics.band import wavenumbers
+from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.schemes.light import Light
-from octsim.stages.cost_estimate import point_cost, points_per_block
-from octsim.stages.sweep import stored_light
+from octsim.stages.detections import stored_light
+from octsim.stages.workload import point_cost, points_per_block
 from octsim.tracing.follow import path_name
 
 _SAMPLES = 101  # of the band, for means over it
@@ -62,7 +61,7 @@ def _strongest_first(layout: Layout, stored: Stored) -> NDArray[np.int64]:
         codes, row = np.unique(part["path_code"].values, return_inverse=True)
         if codes.size == 0:
             continue
-        k = wavenumbers(at.config.spectrum)
+        k = at.config.spectrum.wavenumbers()
         point = np.repeat(np.arange(part.sizes["diameter"]), part["rays_detected"].values)
         phase = (k[0] + k[-1]) / 2 * part["optical_path_length"].values
         field = [
@@ -84,7 +83,7 @@ def _block_points(config: Config) -> int:
     return points_per_block(point_cost(config).size + 1000)
 
 
-@Stage
+@Streamed
 def light_paths(config: Config, detected: xr.Dataset) -> Stream:
     r"""Tell what each light path has in the spectra of a sweep.
 
@@ -107,23 +106,21 @@ def light_paths(config: Config, detected: xr.Dataset) -> Stream:
         return {"diameter": ("diameter", config.sweep.diameters.values())}
 
     title = "What each light path has in the spectra"
-    unnamed = Layout("paths", config, title, __name__, swept, "diameter")
+    unnamed = Layout("paths", config, title, swept, "diameter")
     stored = Stored(detected, "detections", config, unnamed)
     codes = _strongest_first(unnamed, stored)
     named: dict[str, Coordinate] = {
         "path": ("path", np.array([path_name(code) for code in codes.tolist()], str)),
         "path_code": ("path", codes),
     }
-    layout = Layout(
-        "paths", config, title, __name__, lambda config: named | swept(config), "diameter"
-    )
+    layout = Layout("paths", config, title, lambda config: named | swept(config), "diameter")
     return Stream(layout, _shared(layout, stored, codes))
 
 
 def _shared(layout: Layout, stored: Stored, codes: NDArray[np.int64]) -> Iterator[Part]:
     order = np.argsort(codes)
     for at, span in layout.blocks(_block_points):
-        k = wavenumbers(at.config.spectrum)
+        k = at.config.spectrum.wavenumbers()
         step = (k[-1] - k[0]) / (_SAMPLES - 1)
         found = []
         for light in stored_light(stored.part(at, span)):

@@ -1,152 +1,24 @@
-"""From spectra to phases and the phase slope (figures 9 to 12)."""
+"""Components to the phase slope, beside the ideal and the prediction (figure 12)."""
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from octsim.config.models import Config
 from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.reader import Stored
-from octsim.datasets.stage import Part, Stage, Stream
-from octsim.optics.band import wavenumbers
+from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.optics.two_beams import ideal_spectra, predicted_phase_slope
-from octsim.phase.by_config import estimator_of, ideal_phases
-from octsim.phase.derivatives import wrapped
-from octsim.phase.transform import centred as centred
-from octsim.phase.transform import fourier_components as fourier_components
-from octsim.phase.transform import optical_depths as optical_depths
-from octsim.phase.transform import windowed as windowed
-from octsim.stages.cost_estimate import points_per_block
-
-_DEGREE = 4
+from octsim.phase.by_config import ideal_phases
+from octsim.phase.slopes import phase_slopes, slope_of
+from octsim.phase.transform import fourier_components
+from octsim.stages.fourier import block_points, by_components
 
 
-class PhaseSlopes(NamedTuple):
-    """Phase slopes of a sweep over D diameters with C components, in rad/µm = mrad/nm."""
-
-    component: NDArray[np.int64]
-    """Strongest component, (D,); never the constant one, which has no phase."""
-    by_component: NDArray[np.float64]
-    """Slope of each component, (D, C)."""
-    strongest: NDArray[np.float64]
-    """Slope of the strongest component, (D,)."""
-
-
-def turns(phase: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give by how much phases (D, ...) turn from one to the next, (D − 1, ...), in [−π, π].
-
-    This is the step of the unwrapped phase, but as it adds nothing up it does not depend on where a
-    sweep begins.
-    """
-    return wrapped(np.diff(phase, axis=0))
-
-
-def gradient(step: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Differentiate by central differences, one-sided at both ends, as `numpy.gradient` does.
-
-    Parameters
-    ----------
-    step : ndarray, shape (N − 1, ...)
-        Steps of the function from each place to the next.
-    x : ndarray, shape (N,)
-        The places, increasing.
-    """
-    width = np.diff(x).reshape(-1, *(1,) * (step.ndim - 1))
-    slope = step / width
-    left, right = width[:-1], width[1:]
-    inner = (right * slope[:-1] + left * slope[1:]) / (left + right)
-    return np.concatenate((slope[:1], inner, slope[-1:]))
-
-
-def phase_slopes(
-    diameter: NDArray[np.float64], magnitude: NDArray[np.float64], phase: NDArray[np.float64]
-) -> PhaseSlopes:
-    """Differentiate phases over the diameter, by central differences of the unwrapped phase.
-
-    Parameters
-    ----------
-    diameter : ndarray, shape (D,)
-        Increasing diameters, µm.
-    magnitude, phase : ndarray, shape (D, C)
-        Magnitude and phase (rad) of each component.
-    """
-    component = 1 + magnitude[:, 1:].argmax(axis=1)
-    by_component = gradient(turns(phase), diameter)
-    strongest = np.take_along_axis(by_component, component[:, np.newaxis], axis=1)[:, 0]
-    return PhaseSlopes(component, by_component, strongest)
-
-
-def slope_of(diameter: NDArray[np.float64], phase: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Differentiate phases (D,) over diameters (D,), µm, by central differences."""
-    return gradient(turns(phase), diameter)
-
-
-def trend(diameter: NDArray[np.float64], slope: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Fit a polynomial of the fourth degree over the diameter to slopes by least squares, (D,)."""
-    degree = min(_DEGREE, slope.size - 1)
-    fitted: NDArray[np.float64] = Polynomial.fit(diameter, slope, degree)(diameter)
-    return fitted
-
-
-@Stage
-def fourier(config: Config, spectra: xr.Dataset) -> Stream:
-    """Take the Fourier transform of each spectrum.
-
-    Returns
-    -------
-    Dataset
-        magnitude and phase (diameter, component), depth(component); and, of another estimator than
-        fft, estimated_phase and estimated_depth (diameter).
-    """
-
-    def own(config: Config) -> dict[str, Coordinate]:
-        depths = optical_depths(wavenumbers(config.spectrum))
-        return {
-            "diameter": ("diameter", config.sweep.diameters.values()),
-            "component": ("component", np.arange(depths.size)),
-            "depth": ("component", depths),
-        }
-
-    title = "Fourier transform of the spectrum, for each diameter"
-    layout = Layout("fourier", config, title, __name__, own, "diameter")
-    return Stream(layout, _transformed(layout, Stored(spectra, "spectra", config, layout)))
-
-
-def _by_components(config: Config) -> bool:
-    """Tell whether the phase is that of the components themselves."""
-    return config.processing.estimator == "fft"
-
-
-def _block_points(config: Config) -> int:
-    return points_per_block(40 * config.spectrum.samples)
-
-
-def _transformed(layout: Layout, stored: Stored) -> Iterator[Part]:
-    dimensions = ("diameter", "component")
-    estimates = any(not _by_components(at.config) for at in layout.combinations)
-    for at, span in layout.blocks(_block_points):
-        part = stored.part(at, span)
-        intensity = part["intensity"].values
-        components = fourier_components(intensity, at.config.processing)
-        variables: dict[str, Any] = {
-            "magnitude": (dimensions, np.abs(components)),
-            "phase": (dimensions, np.angle(components)),
-        }
-        if estimates:
-            if span.start == 0:
-                foci = stored.part(at, names=("focus",))["focus"].values
-                estimate = estimator_of(at.config, foci)
-            found = estimate(intensity, part["diameter"].values)
-            variables["estimated_phase"] = "diameter", found.phase
-            variables["estimated_depth"] = "diameter", found.depth
-        yield Part(at, span.start, len(intensity), variables)
-
-
-@Stage
+@Streamed
 def phase_slope(config: Config, transformed: xr.Dataset) -> Stream:
     """Differentiate the phase over the diameter, and compare with the ideal and the prediction.
 
@@ -161,7 +33,7 @@ def phase_slope(config: Config, transformed: xr.Dataset) -> Stream:
         return {"diameter": ("diameter", config.sweep.diameters.values())}
 
     title = "Phase slope: change of the spectrum's phase with the diameter"
-    layout = Layout("phase_slope", config, title, __name__, own, "diameter", _component_count)
+    layout = Layout("phase_slope", config, title, own, "diameter", _component_count)
     return Stream(layout, _differentiated(layout, Stored(transformed, "fourier", config, layout)))
 
 
@@ -171,7 +43,7 @@ def _component_count(config: Config) -> dict[str, int]:
 
 def _differentiated(layout: Layout, stored: Stored) -> Iterator[Part]:
     slopes: dict[str, list[NDArray[np.float64]]] = {"phase_slope": [], "ideal_phase_slope": []}
-    for at, span in layout.blocks(_block_points):
+    for at, span in layout.blocks(block_points):
         count = layout.count(at)
         # a central difference looks at both neighbours
         wide = slice(max(span.start - 1, 0), min(span.stop + 1, count))
@@ -188,14 +60,14 @@ def _differentiated(layout: Layout, stored: Stored) -> Iterator[Part]:
 def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[str, Any]:
     """Give the slopes of some diameters of a part that holds their neighbours too."""
     inner = slice(before, before + span.stop - span.start)
-    diameter, k = part["diameter"].values, wavenumbers(config.spectrum)
+    diameter, k = part["diameter"].values, config.spectrum.wavenumbers()
     found = phase_slopes(diameter, part["magnitude"].values, part["phase"].values)
     n_neuron = config.scene.refractive_index.neuron
     spectra = ideal_spectra(n_neuron, diameter, k)
     ideal = fourier_components(spectra, config.processing)
     ideals = phase_slopes(diameter, np.abs(ideal), np.angle(ideal))
     slope, ideal_slope = found.strongest, ideals.strongest
-    if not _by_components(config):
+    if not by_components(config):
         slope = slope_of(diameter, part["estimated_phase"].values)
         ideal_slope = slope_of(diameter, ideal_phases(config, spectra, diameter, k))
     return {
@@ -214,7 +86,7 @@ def _figures(
     ideal_phase_slope: NDArray[np.float64],
 ) -> dict[str, Any]:
     """Give the thesis's summary figures of a sweep."""
-    k = wavenumbers(config.spectrum)
+    k = config.spectrum.wavenumbers()
     predicted = predicted_phase_slope(config.scene.refractive_index.neuron, k[0], k[-1])
     deviation = phase_slope - predicted
     largest = int(np.abs(deviation).argmax())

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from tqdm import tqdm
 
-from octsim.datasets.stage import Part, Stream
+from octsim.datasets.streams import Part, Stream
 
 _BETWEEN_LINES = 60.0  # s
 _AFTER = 2.0  # s; what takes less needs no bar

@@ -5,11 +5,35 @@ from typing import NamedTuple
 
 from octsim.config.grid import combinations
 from octsim.config.models import Config
-from octsim.datasets.catalog import keys_behind
-from octsim.stages.cost_estimate import point_cost, points_per_block
+from octsim.config.scheme import options_of, scheme_of
+from octsim.datasets.catalog import CATALOG
+from octsim.datasets.keys import keys_behind
+from octsim.schemes.cost import PointCost
 
-SCATTERED = ("focus_scan", "focus_sweep", "detections")
+SCATTERED = tuple(row.name for row in CATALOG.values() if row.traces)
 """Stages that trace, and so may take long."""
+_BLOCK_BYTES = 16e6
+_BLOCK_SECONDS = 2.0
+_MOST_POINTS = 512
+
+
+def points_per_block(bytes_per_point: float, seconds_per_point: float = 0.0) -> int:
+    """Give how many points are worked on between two writes: by memory and by time, at least one.
+
+    It follows from the config alone, so that the same run gives the same file.
+    """
+    seconds = max(seconds_per_point, _BLOCK_SECONDS / _MOST_POINTS)
+    most = min(_BLOCK_BYTES / bytes_per_point, _BLOCK_SECONDS / seconds, _MOST_POINTS)
+    return max(1, int(most))
+
+
+def point_cost(config: Config) -> PointCost:
+    """Return what a point of a plain config takes.
+
+    The rates are the scheme's own, measured on one machine; what they decide, the size of blocks,
+    is to be the same on all.
+    """
+    return scheme_of(config).cost(options_of(config))
 
 
 class Work(NamedTuple):
@@ -25,14 +49,15 @@ class Work(NamedTuple):
 
 def work_of(stage: str, config: Config) -> Work:
     """Give what a stage that traces has to do at a plain config."""
-    size, seconds = point_cost(config)
+    cost = point_cost(config)
     count, each = {
         "focus_scan": (config.focus_scan.focus.num, 1),
         # a diameter's foci are one row of the dataset
         "focus_sweep": (config.focus_law.diameters.num, config.focus_law.fraction.num),
         "detections": (config.sweep.diameters.num, 1),
     }[stage]
-    return Work(count, each * seconds, points_per_block(each * size, each * seconds))
+    together = points_per_block(each * cost.size, each * cost.seconds)
+    return Work(count, each * cost.seconds, together)
 
 
 def shares_of(config: Config) -> dict[str, int]:

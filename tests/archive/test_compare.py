@@ -353,7 +353,6 @@ def measured(cost: float, segments: float) -> xr.Dataset:
         "Cost",
         {name: ("setting", values) for name, values in columns.items()},
         {"setting": ["rays 1", "rays 2"]},
-        "octsim.studies.tradeoff.study",
     )
 
 

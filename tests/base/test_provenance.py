@@ -52,16 +52,16 @@ SPECTRA = "Path('workflow/scripts/spectra.py').resolve()"
             '"""Send a ray back by the law of',
         ),
         ("octsim/optics/interface.py", "twice = 2 * cos_i", "twice = 2*cos_i  # twice"),
-        ("octsim/figures/phase.py", "linewidth=1.0", "linewidth=2.0"),
+        ("octsim/figures/phase_slope.py", "linewidth=1.0", "linewidth=2.0"),
     ],
     ids=["docstring", "comment and format", "a module that is not used"],
 )
 def test_what_changes_no_result_changes_no_digest(
     copy: Path, file: str, old: str, new: str
 ) -> None:
-    before = digest_in(copy, "'octsim.stages.sweep'")
+    before = digest_in(copy, "'octsim.schemes.vogel'")
     edit(copy / file, old, new)
-    assert digest_in(copy, "'octsim.stages.sweep'") == before
+    assert digest_in(copy, "'octsim.schemes.vogel'") == before
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,8 @@ def test_what_changes_no_result_changes_no_digest(
 def test_a_changed_formula_changes_the_digest_of_what_uses_it(
     copy: Path, file: str, old: str, new: str
 ) -> None:
-    users, others = ("'octsim.stages.sweep'", "'octsim.stages.focus'"), ("'octsim.config.units'",)
+    users = ("'octsim.schemes.vogel'", "'octsim.schemes.paths.integrate'")
+    others = ("'octsim.config.units'", "'octsim.phase.transform'")
     before = {source: digest_in(copy, source) for source in users + others}
     edit(copy / file, old, new)
     after = {source: digest_in(copy, source) for source in users + others}
@@ -93,7 +94,7 @@ def test_a_formula_changed_in_another_file_is_compiled_anew(copy: Path) -> None:
         "from octsim.config.load import load_config\n"
         "from octsim.instrument.instrument import tracer\n"
         "config = load_config({'tracing': {'rays': 1, 'max_intersections': 1}})\n"
-        "print(tracer(config)(1.4, 0.5).amplitude[0])"
+        "print(Instrument(config).light(1.4, 0.5).amplitude[0])"
     )
     before = float(run_in(copy, code))
     edit(copy / "octsim" / "optics" / "detector.py", "return 1 - squared", "return 0.5 - squared")

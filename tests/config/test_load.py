@@ -17,8 +17,9 @@ from octsim.config.derive import parts_of
 from octsim.config.grid import remarks
 from octsim.config.load import load_config
 from octsim.config.messages import known_keys
-from octsim.config.models import PRESETS, Config
+from octsim.config.models import Config
 from octsim.config.units import format_length, parse_length
+from octsim.schemes.table import PRESETS
 
 ROOT = Path(__file__).parents[2]
 

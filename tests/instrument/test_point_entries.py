@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from octsim.config.load import load_config
-from octsim.instrument.instrument import summer, tracer
+from octsim.instrument.instrument import Instrument
 from octsim.instrument.point_entries import pack, unpack
 from octsim.instrument.point_keys import instrument_key, point_key
 from octsim.schemes.light import AccuracyStatus, Light
@@ -84,10 +84,10 @@ def test_arrays_of_different_lengths_are_refused() -> None:
 
 def test_kept_light_sums_to_the_same_spectrum() -> None:
     config = load_config({"tracing": {"rays": 300}, "spectrum": {"samples": 50}})
-    light = tracer(config)(1.4, 0.9)
+    light = Instrument(config).light(1.4, 0.9)
     assert light.amplitude.size > 0
-    spectrum, error = summer(config)(light)
-    again, error_again = summer(config)(unpack(pack(light)))
+    spectrum, error, _ = Instrument(config).sum(light)
+    again, error_again, _ = Instrument(config).sum(unpack(pack(light)))
     assert again.tobytes() == spectrum.tobytes()
     assert error_again == error
 

@@ -13,7 +13,7 @@ import octsim
 from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.instrument.cache import opened
-from octsim.instrument.instrument import Tracer, tracer
+from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 
 SMALL: dict[str, Any] = {
@@ -121,12 +121,12 @@ def test_a_point_depends_on_nothing_but_itself(scheme: dict[str, Any], tmp_path:
     config = load_config(SMALL, scheme)
     draw = random.Random(1)
     sweep = [(draw.uniform(0.8, 2.4), draw.uniform(0.5, 1.5)) for _ in range(12)]
-    alone = {point: tracer(config)(*point) for point in sweep}
+    alone = {point: Instrument(config).light(*point) for point in sweep}
     with opened(tmp_path / "points.sqlite", 1) as cache:
         for part in (sweep[:5], sweep[3:9], sweep):
             shuffled = draw.sample(part, len(part))
             points = Points(cache)
-            trace_at: Tracer = points.tracer(config)
+            trace_at = Instrument(config, points).light
             assert all(same(trace_at(*point), alone[point]) for point in shuffled)
             points.keep()
     assert points.from_cache == 9
@@ -141,7 +141,7 @@ def test_a_damaged_entry_is_traced_again_and_kept(
     def light() -> tuple[Any, int]:
         with opened(file, 1) as cache:
             points = Points(cache)
-            found = points.tracer(config)(1.4, 0.9)
+            found = Instrument(config, points).light(1.4, 0.9)
             points.keep()
         return found, points.traced
 

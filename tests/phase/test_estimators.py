@@ -14,7 +14,6 @@ from octsim.base.errors import OctsimError
 from octsim.config.models import Config, Processing
 from octsim.figures.estimators import estimators_figure
 from octsim.figures.style import look
-from octsim.optics.band import wavenumbers
 from octsim.optics.two_beams import ideal_spectra, predicted_phase_slope
 from octsim.phase.by_config import estimator_of, ideal_phases
 from octsim.phase.cramer_rao import phase_bound
@@ -24,9 +23,9 @@ from octsim.phase.estimators.fft import peak_depths
 from octsim.phase.estimators.likelihood import Model, maximum_likelihood
 from octsim.phase.estimators.series import series_phases
 from octsim.phase.modelled_spectra import model_of_sweep, modelled
+from octsim.phase.slopes import slope_of
 from octsim.phase.transform import centred, prepared, window_samples
-from octsim.stages.phase_slope import slope_of
-from octsim.stages.sweep import stored_light
+from octsim.stages.detections import stored_light
 from octsim.studies.estimators.contenders import COMMON, CONTENDERS, Band, contenders, slopes
 from octsim.studies.estimators.path_phase import path_slopes
 from octsim.studies.estimators.resolution import point_of, resolution
@@ -34,7 +33,7 @@ from octsim.studies.estimators.study import estimators, from_trend, summary
 from octsim.studies.estimators.wrong_scene import misreading
 
 Array = NDArray[np.float64]
-K = wavenumbers(Config().spectrum)
+K = Config().spectrum.wavenumbers()
 X = place(K)
 DEPTH = np.linspace(1.45, 2.75, 27)
 PHASE = np.linspace(-3, 3, 27)
@@ -389,7 +388,7 @@ def test_where_there_is_no_focus_there_is_no_phase(name: str) -> None:
 @pytest.mark.parametrize("estimator", [*ESTIMATORS, "maximum_likelihood"])
 def test_the_ideal_slope_is_near_the_prediction(estimator: str) -> None:
     config = octsim.load_config({"processing": {"estimator": estimator}})
-    k, n_neuron = wavenumbers(config.spectrum), config.scene.refractive_index.neuron
+    k, n_neuron = config.spectrum.wavenumbers(), config.scene.refractive_index.neuron
     diameter = config.sweep.diameters.values()
     phase = ideal_phases(config, ideal_spectra(n_neuron, diameter, k), diameter, k)
     off_it = slope_of(diameter, phase) - predicted_phase_slope(n_neuron, k[0], k[-1])

@@ -6,18 +6,12 @@ import reference
 
 from octsim.config.load import load_config
 from octsim.config.processing import Processing
-from octsim.optics.band import wavenumbers
 from octsim.optics.two_beams import ideal_spectra, predicted_phase_slope
-from octsim.stages.phase_slope import (
-    centred,
-    fourier_components,
-    optical_depths,
-    phase_slopes,
-    windowed,
-)
+from octsim.phase.slopes import phase_slopes
+from octsim.phase.transform import centred, fourier_components, optical_depths, windowed
 
 CONFIG = load_config()
-K = wavenumbers(CONFIG.spectrum)
+K = CONFIG.spectrum.wavenumbers()
 DIAMETERS = np.linspace(1, 2, 151)
 
 

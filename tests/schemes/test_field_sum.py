@@ -8,12 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from octsim.config.load import load_config
-from octsim.optics.band import wavenumbers
 from octsim.schemes.field_sum import intensity
 
 
 def test_wavenumbers_are_even_and_hold_both_ends() -> None:
-    k = wavenumbers(load_config().spectrum)
+    k = load_config().spectrum.wavenumbers()
     assert k.size == 1000
     assert (k[0], k[-1]) == (2 * np.pi / 0.9, 2 * np.pi / 0.65)
     assert np.allclose(np.diff(k), (k[-1] - k[0]) / 999, rtol=1e-11)

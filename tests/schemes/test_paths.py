@@ -10,20 +10,20 @@ from scipy import integrate as quadrature
 
 from octsim.config.load import load_config
 from octsim.config.models import Config
-from octsim.instrument.instrument import summer, tracer
-from octsim.optics.band import wavenumbers
+from octsim.instrument.build import detector_of, scene_of
+from octsim.instrument.instrument import Instrument
 from octsim.optics.beam import Beam, aim
-from octsim.optics.detector import Detector, detector_of
+from octsim.optics.detector import Detector
 from octsim.optics.interface import cos_transmitted_squared, fresnel
-from octsim.optics.scene import Cylinder, Medium, Plane, Scene, neuron_on_glass
-from octsim.schemes.field_sum import intensity, sum_paths
+from octsim.optics.scene import Cylinder, Medium, Plane, Scene
+from octsim.schemes.field_sum import field_of_paths, intensity, spectrum_of
 from octsim.schemes.light import AccuracyStatus, Light
 from octsim.schemes.paths.integrate import integrate
 from octsim.tracing.follow import path_name
 from octsim.tracing.tree import trace
 
 CONFIG = Config()
-K = wavenumbers(CONFIG.spectrum)
+K = CONFIG.spectrum.wavenumbers()
 BAND = float(K[0]), float(K[-1])
 
 
@@ -82,7 +82,7 @@ def test_the_true_error_is_within_the_accuracy(
     overlay: dict[str, Any], diameter: float, focus: float, height: float
 ) -> None:
     config = load_config(overlay)
-    scene, detector, k = neuron_on_glass(config.scene, diameter), detector_of(config), K[::111]
+    scene, detector, k = scene_of(config, diameter), detector_of(config), K[::111]
     reference = dense_field(scene, detector, focus, k, (0, 1, 700), (0, height, 700))
     for accuracy in (1e-2, 1e-3, 2e-4):
         light = integrate(scene, detector, focus, BAND, accuracy)
@@ -120,7 +120,7 @@ def test_a_layered_scene_needs_no_cylinder() -> None:
 
 def test_a_focus_on_the_glass_gives_the_mean_fresnel_coefficient() -> None:
     config = load_config({"scene": {"refractive_index": {"neuron": 1.33}}})
-    light = integrate(neuron_on_glass(config.scene, 1.0), detector_of(config), 0.0, BAND, 1e-7)
+    light = integrate(scene_of(config, 1.0), detector_of(config), 0.0, BAND, 1e-7)
 
     def r(squared_radius: float) -> float:
         cos = 1 / math.sqrt(1 + squared_radius * math.tan(math.asin(1.2 / 1.52)) ** 2)
@@ -132,27 +132,27 @@ def test_a_focus_on_the_glass_gives_the_mean_fresnel_coefficient() -> None:
 
 def test_the_error_falls_with_the_accuracy_and_is_not_underestimated() -> None:
     config, focus = CONFIG, 0.8824
-    scene, detector = neuron_on_glass(config.scene, 1.4), detector_of(config)
+    scene, detector = scene_of(config, 1.4), detector_of(config)
     truth = field(integrate(scene, detector, focus, BAND, 1e-9), K)
     for accuracy in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6):
         light = integrate(scene, detector, focus, BAND, accuracy)
-        _, estimate = sum_paths(*light[:5], K, accuracy)
+        _, estimate = spectrum_of(field_of_paths(*light[:5], K, accuracy))
         assert error(light, truth, K) < estimate < accuracy
 
 
 def test_a_point_needs_far_fewer_segments_than_the_tree() -> None:
-    light = integrate(neuron_on_glass(CONFIG.scene, 1.4), detector_of(CONFIG), 0.8824, BAND, 1e-4)
+    light = integrate(scene_of(CONFIG, 1.4), detector_of(CONFIG), 0.8824, BAND, 1e-4)
     assert light.segments < 8000  # 3000 rays: 215 302, with an error of 0.8 %
 
 
 def test_light_that_misses_the_cylinder_is_named() -> None:
-    scene, detector = neuron_on_glass(CONFIG.scene, 2.0), detector_of(CONFIG)
+    scene, detector = scene_of(CONFIG, 2.0), detector_of(CONFIG)
     light = integrate(scene, detector, 3.5, BAND, 1e-4)
     assert light.status == AccuracyStatus.AT_AN_EDGE
 
 
 def test_a_budget_that_does_not_suffice_is_named() -> None:
-    scene, detector = neuron_on_glass(CONFIG.scene, 1.4), detector_of(CONFIG)
+    scene, detector = scene_of(CONFIG, 1.4), detector_of(CONFIG)
     light = integrate(scene, detector, 0.8824, BAND, 1e-8, budget=2000)
     assert light.status == AccuracyStatus.BUDGET_SPENT
     assert np.isfinite(light.amplitude).all()
@@ -161,21 +161,21 @@ def test_a_budget_that_does_not_suffice_is_named() -> None:
 
 def test_a_focus_beyond_the_objective_is_refused() -> None:
     with pytest.raises(ValueError, match="focus"):
-        integrate(neuron_on_glass(CONFIG.scene, 1.4), detector_of(CONFIG), 301.0, BAND, 1e-3)
+        integrate(scene_of(CONFIG, 1.4), detector_of(CONFIG), 301.0, BAND, 1e-3)
 
 
 def test_interpolating_paths_over_k_is_summing_their_rays() -> None:
-    light = integrate(neuron_on_glass(CONFIG.scene, 1.4), detector_of(CONFIG), 0.8824, BAND, 1e-4)
+    light = integrate(scene_of(CONFIG, 1.4), detector_of(CONFIG), 0.8824, BAND, 1e-4)
     for accuracy in (1e-3, 1e-6, 1e-10):
-        spectrum, _ = sum_paths(*light[:5], K, accuracy)
+        spectrum, _ = spectrum_of(field_of_paths(*light[:5], K, accuracy))
         summed = intensity(light.amplitude, light.optical_path_length, K)
         assert np.abs(spectrum - summed).max() < 0.05 * accuracy * summed.max() + 1e-14
 
 
 def test_rays_of_one_path_may_lie_far_apart() -> None:
     amplitude, lengths = np.array([1e-3, 2e-3, -1e-3]), np.array([0.5, 40.0, 190.0])
-    spectrum, estimate = sum_paths(
-        np.array([4, 4, 4]), amplitude, 0.99 * amplitude, lengths, 0.0, K, 1e-6
+    spectrum, estimate = spectrum_of(
+        field_of_paths(np.array([4, 4, 4]), amplitude, 0.99 * amplitude, lengths, 0.0, K, 1e-6)
     )
     assert np.allclose(spectrum, intensity(amplitude, lengths, K), atol=1e-14)
     assert estimate == pytest.approx(0.02, rel=0.02)
@@ -185,10 +185,10 @@ def test_the_error_of_a_spiral_of_rays_is_estimated_too() -> None:
     ratios = []
     for diameter in np.linspace(1, 2, 5):
         focus = 0.581 * diameter + 0.069
-        light = tracer(CONFIG)(diameter, focus)
+        light = Instrument(CONFIG).light(diameter, focus)
         assert light.status == AccuracyStatus.NOT_CONTROLLED
-        spectrum, estimate = summer(CONFIG)(light)
-        scene = neuron_on_glass(CONFIG.scene, diameter)
+        spectrum, estimate, _ = Instrument(CONFIG).sum(light)
+        scene = scene_of(CONFIG, diameter)
         truth = np.abs(field(integrate(scene, detector_of(CONFIG), focus, BAND, 1e-6), K)) ** 2
         ratios.append(estimate / (np.abs(spectrum - truth).max() / truth.max()))
     assert 1 < np.median(ratios) < 10

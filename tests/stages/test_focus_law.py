@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from octsim.config.load import load_config
-from octsim.stages.law import FitStatus, fit_gaussian, fit_line, focus_law, gaussian, gaussian_fits
+from octsim.stages.focus_law import fit_line, focus_law
+from octsim.stages.gaussian_fits import FitStatus, fit_gaussian, gaussian, gaussian_fits
 
 FOCI = np.linspace(0.4, 0.9, 41)
 

@@ -6,7 +6,7 @@ import pytest
 
 import octsim
 from octsim.config.load import load_config
-from octsim.datasets.stage import gathered
+from octsim.datasets.streams import gathered
 from octsim.stages import progress
 
 

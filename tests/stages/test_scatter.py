@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import octsim
 from octsim.config.grid import Combination
 from octsim.datasets.layout import Layout
-from octsim.datasets.stage import Stream
+from octsim.datasets.streams import Stream
 from octsim.datasets.writer import write_stream
 from octsim.stages.scatter import WHOLE, Share, gathered, notes_of, write_share
 from octsim.stages.workload import shares_of

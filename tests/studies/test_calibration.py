@@ -16,13 +16,12 @@ from octsim.config.models import Config
 from octsim.datasets.files import read, write
 from octsim.figures.calibration import calibration_figure
 from octsim.figures.style import look, save
-from octsim.instrument.instrument import spectrometer, summer, tracer
-from octsim.optics.band import wavenumbers
+from octsim.instrument.instrument import Instrument
 from octsim.optics.two_beams import ideal_spectra, predicted_phase_slope
 from octsim.phase.derivatives import derivative, stencil, wrapped
 from octsim.phase.estimators.series import series_phases
+from octsim.phase.transform import fourier_components
 from octsim.schemes.light import AccuracyStatus, Light
-from octsim.stages.phase_slope import fourier_components
 from octsim.studies.calibration import study as calibrate
 from octsim.studies.calibration.study import calibration, interpolation_error, summary
 from octsim.studies.calibration.tolerances import PARAMETERS, drawn, moved, offsets_of, value_of
@@ -30,7 +29,7 @@ from octsim.studies.sides import SIDES, path_field, side_slopes
 from octsim.tracing.follow import path_name
 
 Array = NDArray[np.float64]
-K = wavenumbers(Config().spectrum)
+K = Config().spectrum.wavenumbers()
 N = Config().scene.refractive_index.neuron
 FITTED = calibrate.calibrating(Config())
 
@@ -101,7 +100,7 @@ def plates(config: Config) -> Callable[[float, float], tuple[Array, float, int]]
     A cosine over the wavenumbers as they are believed to be, of the frequency that the estimator
     holds, with the phase 2nd k_m + BEND d² + LEAN z at the middle k_m of the band as it is.
     """
-    k, n = wavenumbers(config.spectrum), config.scene.refractive_index.neuron
+    k, n = config.spectrum.wavenumbers(), config.scene.refractive_index.neuron
 
     def at(diameter: float, focus: float) -> tuple[Array, float, int]:
         held = TABLE[np.abs(TABLE - diameter).argmin()]
@@ -197,7 +196,7 @@ def test_many_counted_rays_and_a_larger_step_give_the_same_slope(calibrated: xr.
     one = calibrated.isel(diameter=3)
     diameter, focus, step = float(one["diameter"]), float(one["focus"]), 3e-3
     rays = by_rays(load_config(), 200_000)
-    trace_at, sum_light = tracer(rays), summer(rays)
+    trace_at, sum_light = Instrument(rays).light, Instrument(rays).sum
     spectra = [sum_light(trace_at(diameter + by, focus))[0] for by in (-step, step)]
     u = K - K.mean()
     cos, sin = np.cos(2 * N * diameter * u), np.sin(2 * N * diameter * u)
@@ -218,7 +217,7 @@ def test_a_sensitivity_is_what_another_calibration_finds(
     diameter, focus, step = float(one["diameter"]), float(one["focus"]), 1e-3
     slopes = []
     for by in (-change, change):
-        look = spectrometer(moved(calibrate.converged(Config()), {name: by}, 0.0).config)
+        look = Instrument(moved(calibrate.converged(Config()), {name: by}, 0.0).config).spectrum
         spectra = np.stack([look(diameter + side, focus)[0] for side in (-step, step)])
         before, after = series_phases(spectra, K, N * diameter, FITTED)
         slopes.append(wrapped(after - before) / (2 * step))

@@ -13,11 +13,10 @@ from octsim.base.errors import OctsimError
 from octsim.config.derive import by_accuracy
 from octsim.config.load import load_config
 from octsim.config.models import FocusLine, Processing
-from octsim.optics.band import wavenumbers
 from octsim.optics.two_beams import predicted_phase_slope
 from octsim.phase.derivatives import phase_derivative
+from octsim.phase.slopes import phase_slopes
 from octsim.phase.transform import fourier_components
-from octsim.stages.phase_slope import phase_slopes
 from octsim.studies.causes.beat import Fields, Parts, fields_at, parts
 from octsim.studies.causes.beat_slope import beat_slopes
 from octsim.studies.causes.switches import (
@@ -36,7 +35,7 @@ from octsim.studies.causes.switches import (
 Array = NDArray[np.float64]
 LINE = {"slope": 0.58, "intercept": "64 nm"}
 CONFIG = load_config({"sweep": {"focus": LINE}})
-K = wavenumbers(CONFIG.spectrum)
+K = CONFIG.spectrum.wavenumbers()
 N = CONFIG.scene.refractive_index.neuron
 PREDICTED = predicted_phase_slope(N, float(K[0]), float(K[-1]))
 DIAMETER = np.linspace(1, 2, 151)

@@ -16,8 +16,7 @@ from octsim.config.models import Config
 from octsim.figures.action_potential import action_potential_figure
 from octsim.figures.expansion import expansion_figure
 from octsim.figures.style import look, save
-from octsim.instrument.instrument import spectrometer
-from octsim.optics.band import wavenumbers
+from octsim.instrument.instrument import Instrument
 from octsim.phase.derivatives import wrapped
 from octsim.phase.estimators.series import series_phases
 from octsim.phase.measured_series import Series, change_from_rest, read_series
@@ -242,8 +241,8 @@ def test_the_phase_of_a_thicker_neuron_gives_its_thickness(
     calibrated: xr.Dataset, change: float
 ) -> None:
     config = load_config(LAW)
-    focus, k = 0.58 * 1.4 + 0.066, wavenumbers(config.spectrum)
-    see = spectrometer(converged(config))
+    focus, k = 0.58 * 1.4 + 0.066, config.spectrum.wavenumbers()
+    see = Instrument(converged(config)).spectrum
     spectra = np.stack([see(1.4 + by / 1e3, focus)[0] for by in (0.0, change)])
     rest, moved = series_phases(
         spectra, k, 1.4 * config.scene.refractive_index.neuron, calibrate.calibrating(config)
@@ -257,7 +256,7 @@ def test_the_phase_of_a_thicker_neuron_gives_its_thickness(
 
 def test_the_error_of_a_trace_covers_it_as_often_as_one_sigma_should() -> None:
     config = Config()
-    k, n_neuron = wavenumbers(config.spectrum), config.scene.refractive_index.neuron
+    k, n_neuron = config.spectrum.wavenumbers(), config.scene.refractive_index.neuron
     at_rest = np.tile(1 + 0.5 * np.cos(2 * n_neuron * 1.4 * k), (240, 1))
     covered = []
     for seed in range(20):

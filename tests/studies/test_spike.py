@@ -13,7 +13,6 @@ from octsim.config.models import Config
 from octsim.datasets.files import read, write
 from octsim.figures.causes import FIGURES
 from octsim.figures.style import look, save
-from octsim.optics.band import wavenumbers
 from octsim.studies.causes.study import causes, summary
 from octsim.studies.causes.switches import CAUSES
 
@@ -52,7 +51,7 @@ def test_the_dataset_s_numbers_add_up_to_the_run_s_slope(found: xr.Dataset) -> N
 def test_the_thesis_s_spike_is_the_midpoint_s(found: xr.Dataset) -> None:
     assert found["spike_diameter"].item() == pytest.approx(1.15, abs=0.01)
     place = found["spike_neighbour"].values
-    at_edge = found["spike_maximum"].values == wavenumbers(SMALL.spectrum)[0]
+    at_edge = found["spike_maximum"].values == SMALL.spectrum.wavenumbers()[0]
     assert 0.2 < at_edge.mean() < 0.6
     jump = int(np.abs(np.diff(found["spike_phase_slope"].values)).argmax())
     assert at_edge[jump]

@@ -13,14 +13,14 @@ import xarray as xr
 from octsim.config.checks import rounding_remarks
 from octsim.config.grid import remarks
 from octsim.config.load import load_config
-from octsim.config.models import Config, SceneConfig
+from octsim.config.models import Config
 from octsim.datasets.files import write
 from octsim.figures.stability import stability_figure
 from octsim.figures.style import look, save
+from octsim.instrument.build import detector_of, scene_of
 from octsim.optics.beam import aim, aperture_radius, vogel_spiral
-from octsim.optics.detector import detector_of
 from octsim.optics.interface import Vector, fresnel, unit
-from octsim.optics.scene import Scene, neuron_on_glass
+from octsim.optics.scene import Scene
 from octsim.studies.stability import compare as comparison
 from octsim.studies.stability import pairs
 from octsim.studies.stability import study as stability
@@ -86,10 +86,10 @@ def test_the_axial_ray_of_50_digits_has_the_paths_of_parallel_plates() -> None:
 
 
 def test_a_diameter_off_by_a_ten_billionth_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    def off(config: SceneConfig, diameter: float) -> Scene:
-        return neuron_on_glass(config, diameter * (1 + 1e-10))
+    def off(config: Config, diameter: float) -> Scene:
+        return scene_of(config, diameter * (1 + 1e-10))
 
-    monkeypatch.setattr(pairs, "neuron_on_glass", off)
+    monkeypatch.setattr(pairs, "scene_of", off)
     row = measured("default / none / ")
     assert row.status == Status.BEYOND
     assert "phase" in row.reason
@@ -141,9 +141,8 @@ def test_reflection_at_nearly_equal_indices_keeps_its_digits(contrast: float, co
 
 def test_the_objective_keeps_its_radius_close_to_the_index_of_glass() -> None:
     aperture = 1.52 * (1 - 1e-9)
-    objective = load_config({"objective": {"numerical_aperture": aperture}}).objective
     exact = 300 * numbers.tan(numbers.asin(numbers.mpf(aperture) / numbers.mpf(1.52)))
-    assert aperture_radius(objective, 1.52) == pytest.approx(float(exact), rel=1e-15)
+    assert aperture_radius(aperture, 1.52, 300.0) == pytest.approx(float(exact), rel=1e-15)
 
 
 def test_the_last_of_many_rays_is_as_well_placed_as_the_first() -> None:
@@ -164,7 +163,7 @@ def test_a_direction_gets_its_length_back() -> None:
 def test_octsims_formulas_ray_by_ray_give_its_own_bits() -> None:
     config = load_config({"tracing": {"rays": 100}, "detector": {"core_diameter": "40 um"}})
     case = prepared(Cell("", "", "", ()), config)
-    faces, place = faces_of(neuron_on_glass(config.scene, 1.4)), np.argsort(case.beam.number)
+    faces, place = faces_of(scene_of(config, 1.4)), np.argsort(case.beam.number)
     found = case.found
     for ray, code, path in zip(found.ray, found.path, found.optical_path_length, strict=True):
         arguments = (case.beam, 0.876, int(place[ray]), int(code))

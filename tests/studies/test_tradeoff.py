@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from octsim.base.errors import ConfigError
 from octsim.config.load import load_config
-from octsim.config.models import PRESETS, Config
+from octsim.config.models import Config
 from octsim.datasets.files import read, write
 from octsim.figures.style import look, save
 from octsim.figures.tradeoff import tradeoff_figure
+from octsim.schemes.table import PRESETS
 from octsim.studies.tradeoff.frontier import cost_of_rays, efficient, power_law
 from octsim.studies.tradeoff.settings import is_the_runs, preset_of, settings
 from octsim.studies.tradeoff.study import intensity_errors, summary, tradeoff

@@ -8,15 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
-from literal import literal
+from literal import literal, spiral, trace_spiral
 
 from octsim.config.load import load_config
 from octsim.config.models import Config
-from octsim.optics.beam import Beam, vogel_beam
-from octsim.optics.detector import Outcome, detector_of
+from octsim.instrument.build import detector_of, scene_of
+from octsim.optics.beam import Beam
+from octsim.optics.detector import Outcome
 from octsim.optics.interface import fresnel
-from octsim.optics.scene import neuron_on_glass
-from octsim.schemes.vogel import vogel_tracer
 from octsim.tracing.follow import path_name
 from octsim.tracing.tree import Detections, trace
 
@@ -29,7 +28,7 @@ def by_ray_and_path(found: Detections) -> dict[tuple[int, str], tuple[float, flo
 
 def assert_same_rays(config: Config, diameter: float, focus: float) -> int:
     """Compare ray for ray; a ray at an edge of what is detected may be in one and not the other."""
-    fast = by_ray_and_path(vogel_tracer(config)(diameter, focus))
+    fast = by_ray_and_path(trace_spiral(config)(diameter, focus))
     slow = {
         (d.ray, d.path): (d.amplitude, d.optical_path_length)
         for d in literal(config, diameter, focus).detections
@@ -103,7 +102,7 @@ def test_the_tree_matches_the_literal_one_in_any_scene(
 
 def test_segments_are_counted_as_in_the_literal_tree() -> None:
     config = load_config({"tracing": {"rays": 300}})
-    fast, slow = vogel_tracer(config)(1.4, 0.882), literal(config, 1.4, 0.882)
+    fast, slow = trace_spiral(config)(1.4, 0.882), literal(config, 1.4, 0.882)
     assert fast.segments == slow.segments
 
 
@@ -111,7 +110,7 @@ def test_every_segment_ends_in_one_way() -> None:
     config = load_config(
         {"tracing": {"rays": 500, "min_amplitude": 0.01}, "objective": {"numerical_aperture": 1.5}}
     )
-    found = vogel_tracer(config)(1.4, 0.882)
+    found = trace_spiral(config)(1.4, 0.882)
     not_traced = found.outcomes[[Outcome.FAINT, Outcome.TOTALLY_REFLECTED]].sum()
     ended = found.outcomes.sum() - not_traced
     assert found.outcomes[Outcome.FAINT] > 0
@@ -123,7 +122,7 @@ def test_every_segment_ends_in_one_way() -> None:
 
 def axial(max_intersections: int = 11) -> dict[str, tuple[float, float]]:
     config = load_config({"tracing": {"rays": 1, "max_intersections": max_intersections}})
-    return {path: v for (_, path), v in by_ray_and_path(vogel_tracer(config)(1.4, 0.8)).items()}
+    return {path: v for (_, path), v in by_ray_and_path(trace_spiral(config)(1.4, 0.8)).items()}
 
 
 def test_axial_paths_have_the_lengths_and_amplitudes_of_parallel_plates() -> None:
@@ -154,7 +153,7 @@ def test_axial_amplitudes_keep_the_energy_of_a_stack_of_plates() -> None:
     # Airy's, here from the recursion over the interfaces.
     k = 2 * np.pi / 0.8
     config = load_config({"tracing": {"rays": 1, "max_intersections": 30}})
-    found = vogel_tracer(config)(1.4, 0.0)
+    found = trace_spiral(config)(1.4, 0.0)
     field = np.sum(found.amplitude * np.exp(1j * k * found.optical_path_length))
     r_gw, r_wn = -(1.33 - 1.52) / (1.33 + 1.52), -(1.39 - 1.33) / (1.39 + 1.33)
     far = -r_wn * np.exp(2j * k * 1.39 * 1.4)
@@ -174,7 +173,7 @@ def test_optical_path_follows_from_the_geometry_of_the_near_reflection() -> None
         np.ones(1),
         np.arange(1),
     )
-    found = trace(neuron_on_glass(config.scene, 1.4), beam, detector_of(config), focus)
+    found = trace(scene_of(config, 1.4), beam, detector_of(config), focus)
     path = by_ray_and_path(found)[0, "PT CR PT"][1]
     in_water = math.asin(1.52 * math.sin(tilt) / 1.33)
     # y on the way: from the focus back to the glass, to the cylinder and back, back to the focus
@@ -188,9 +187,9 @@ def test_optical_path_follows_from_the_geometry_of_the_near_reflection() -> None
 @pytest.mark.parametrize(("mirror_x", "mirror_y"), [(-1, 1), (1, -1), (-1, -1)])
 def test_a_mirrored_beam_gives_the_same_light(mirror_x: int, mirror_y: int) -> None:
     config = load_config({"tracing": {"rays": 500}})
-    beam = vogel_beam(config.objective, config.tracing, 1.52)
+    beam = spiral(config)
     mirrored = beam._replace(vx=mirror_x * beam.vx, vy=mirror_y * beam.vy)
-    scene, detector = neuron_on_glass(config.scene, 1.4), detector_of(config)
+    scene, detector = scene_of(config, 1.4), detector_of(config)
     one, other = trace(scene, beam, detector, 0.88), trace(scene, mirrored, detector, 0.88)
     sign = {"x": mirror_x, "vx": mirror_x, "y": mirror_y, "vy": mirror_y}
     for name in one._fields:
@@ -201,15 +200,15 @@ def test_a_neuron_of_water_is_not_there() -> None:
     config = load_config(
         {"scene": {"refractive_index": {"neuron": 1.33}}, "tracing": {"rays": 300}}
     )
-    found = vogel_tracer(config)(1.4, 0.01)
+    found = trace_spiral(config)(1.4, 0.01)
     seen = {path_name(code) for code in found.path[np.abs(found.amplitude) > 1e-20].tolist()}
     assert seen == {"PR"}
 
 
 def test_the_order_of_the_surfaces_does_not_matter() -> None:
     config = load_config({"tracing": {"rays": 300}})
-    beam, detector = vogel_beam(config.objective, config.tracing, 1.52), detector_of(config)
-    scene = neuron_on_glass(config.scene, 1.4)
+    beam, detector = spiral(config), detector_of(config)
+    scene = scene_of(config, 1.4)
     swapped = replace(scene, surfaces=scene.surfaces[::-1])
     one, other = trace(scene, beam, detector, 0.88), trace(swapped, beam, detector, 0.88)
     for name in ("ray", "amplitude", "optical_path_length", "segments", "outcomes"):
@@ -218,19 +217,19 @@ def test_the_order_of_the_surfaces_does_not_matter() -> None:
 
 def test_more_meetings_than_paths_can_be_numbered_for_are_refused() -> None:
     config = load_config({"tracing": {"rays": 3}})
-    beam, detector = vogel_beam(config.objective, config.tracing, 1.52), detector_of(config)
+    beam, detector = spiral(config), detector_of(config)
     with pytest.raises(ValueError, match="max_intersections: 31 given"):
-        trace(neuron_on_glass(config.scene, 1.4), beam, detector, 0.88, max_intersections=31)
+        trace(scene_of(config, 1.4), beam, detector, 0.88, max_intersections=31)
 
 
 def test_a_focus_beyond_the_objective_is_refused() -> None:
     config = load_config({"tracing": {"rays": 3}})
     with pytest.raises(ValueError, match="must be below the focus distance"):
-        vogel_tracer(config)(1.0, 300.0)
+        trace_spiral(config)(1.0, 300.0)
 
 
 def test_a_ray_returned_to_the_rim_itself_is_within_it() -> None:
     # with the focus on the glass every reflected ray retraces the aperture, the rim ray its rim
     for rays in (10, 300, 3000):
         config = load_config({"tracing": {"rays": rays, "max_intersections": 1}})
-        assert vogel_tracer(config)(2.0, 0.0).ray.size == rays
+        assert trace_spiral(config)(2.0, 0.0).ray.size == rays

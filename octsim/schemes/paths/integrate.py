@@ -7,7 +7,6 @@ fit is refined (`refine`), until the whole is within the accuracy.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -16,11 +15,9 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.base.compiled import compiled
-from octsim.config.models import Config
-from octsim.optics.band import wavenumbers
 from octsim.optics.beam import Beam, aim
-from octsim.optics.detector import Detector, detector_of
-from octsim.optics.scene import Cylinder, Scene, neuron_on_glass
+from octsim.optics.detector import Detector
+from octsim.optics.scene import Cylinder, Scene
 from octsim.schemes.light import AccuracyStatus, Light
 from octsim.schemes.paths.aperture_tiles import Tile, images
 from octsim.schemes.paths.chebyshev import HIGHEST, LOOK, tables
@@ -283,15 +280,3 @@ def _orders(accuracy: float, symmetric: bool) -> tuple[tuple[int, int], tuple[in
     # where nothing says that patches are near x = 0, all of the aperture is looked at closely
     survey = (along_s if symmetric else min(COLUMNS, LANES // along_v)), along_v
     return survey, (min(max(4, round(digits + 1)), 10), min(max(3, round(0.5 * digits + 1)), 8))
-
-
-def path_tracer(config: Config) -> Callable[[float, float], Light]:
-    """Make the function of diameter and focus (µm) that integrates a config's light paths."""
-    detector, tracing, k = detector_of(config), config.tracing, wavenumbers(config.spectrum)
-    band = float(k[0]), float(k[-1])
-
-    def at(diameter: float, focus: float) -> Light:
-        scene = neuron_on_glass(config.scene, diameter)
-        return integrate(scene, detector, focus, band, tracing.accuracy, tracing.max_intersections)
-
-    return at

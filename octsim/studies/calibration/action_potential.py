@@ -8,14 +8,13 @@ import xarray as xr
 from octsim.base.threads import each
 from octsim.config.models import Config
 from octsim.datasets.files import make
-from octsim.instrument.instrument import spectrometer
-from octsim.optics.band import wavenumbers
+from octsim.instrument.instrument import Instrument
 from octsim.optics.two_beams import predicted_phase_slope
 from octsim.phase.derivatives import Array
 from octsim.phase.estimators.series import series_phases
 from octsim.phase.measured_series import Series, change_from_rest
 from octsim.phase.noise import shot_noise
-from octsim.stages.sweep import focus_line
+from octsim.stages.focus_law import focus_line
 from octsim.studies.calibration.expansion import expansion
 from octsim.studies.calibration.round_trips import round_trips, trip_diameters
 from octsim.studies.calibration.study import by_fft, calibrating, converged
@@ -56,12 +55,12 @@ def action_potential(
     OctsimError
         If the diameter is outside the calibration's.
     """
-    settings, k = config.action_potential, wavenumbers(config.spectrum)
+    settings, k = config.action_potential, config.spectrum.wavenumbers()
     time = INTERVAL * np.arange(SAMPLES, dtype=np.float64)
     growth = swelling(time, settings.expansion)
     line = focus_line(config, law)
     focus = line.slope * settings.diameter + line.intercept
-    look = spectrometer(converged(config))
+    look = Instrument(converged(config)).spectrum
     grown = (settings.diameter + growth).tolist()
     spectra = np.stack(list(each(lambda diameter: look(diameter, focus)[0], grown, threads)))
     counted = shot_noise(spectra, settings.photons, np.random.default_rng(settings.seed))
@@ -91,7 +90,6 @@ def action_potential(
             **_trips(config, calibration, law, threads),
         },
         {"time": time, "trip_diameter": trip_diameters(config)},
-        __name__,
     )
 
 

@@ -7,13 +7,12 @@ import xarray as xr
 
 from octsim.base.threads import each
 from octsim.config.models import Config
-from octsim.instrument.instrument import Spectrometer, spectrometer
-from octsim.optics.band import wavenumbers
+from octsim.instrument.instrument import Instrument
 from octsim.phase.derivatives import Array
 from octsim.phase.estimators.series import series_phases
 from octsim.phase.measured_series import Series, change_from_rest
 from octsim.phase.noise import shot_noise
-from octsim.stages.sweep import focus_line
+from octsim.stages.focus_law import focus_line
 from octsim.studies.calibration.expansion import Expansion, expansion
 from octsim.studies.calibration.study import calibrating, converged
 from octsim.studies.calibration.tolerances import Place, drawn
@@ -60,16 +59,24 @@ def _recover(
     if generator is not None:
         spectra = shot_noise(spectra, config.action_potential.photons, generator)
     depth = config.scene.refractive_index.neuron * diameter
-    phase = series_phases(spectra, wavenumbers(config.spectrum), depth, calibrating(config))
+    phase = series_phases(spectra, config.spectrum.wavenumbers(), depth, calibrating(config))
     series = Series(np.arange(REST + 1.0), phase)
     change = change_from_rest(series, REST)
     found = expansion(change.phase[-1:], diameter, calibration, change.error[-1:])
     return Expansion(*(part[0] for part in found))
 
 
-def _pair(make: Spectrometer, place: Place, diameter: float, focus: float, grown: float) -> Array:
+def _pair(
+    instrument: Instrument,
+    place: Place,
+    diameter: float,
+    focus: float,
+    grown: float,
+) -> Array:
     at = diameter + place.diameter
-    return np.stack([make(at + by, focus + place.focus)[0] for by in (0.0, grown)])
+    return np.stack(
+        [instrument.spectrum(at + by, focus + place.focus).intensity for by in (0.0, grown)]
+    )
 
 
 def round_trips(
@@ -88,7 +95,7 @@ def round_trips(
     line = focus_line(config, law)
     foci = line.at(diameters)
     believed = [
-        _pair(spectrometer(exact), Place(exact, 0.0, 0.0), diameter, focus, grown)
+        _pair(Instrument(exact), Place(exact, 0.0, 0.0), diameter, focus, grown)
         for diameter, focus in zip(diameters.tolist(), foci.tolist(), strict=True)
     ]
     seeds = np.random.SeedSequence(config.action_potential.seed).spawn(diameters.size * TRIALS)
@@ -98,7 +105,7 @@ def round_trips(
         at = number // TRIALS
         diameter, focus = float(diameters[at]), float(foci[at])
         place = drawn(exact, generator, line.slope)
-        other = _pair(spectrometer(place.config), place, diameter, focus, grown)
+        other = _pair(Instrument(place.config), place, diameter, focus, grown)
         return [
             _recover(config, calibration, believed[at], diameter, generator)._replace(
                 systematic_error=np.zeros(())

@@ -12,13 +12,12 @@ from octsim.config.derive import by_accuracy, by_rays
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.datasets.files import flags, make
-from octsim.instrument.instrument import Spectrometer, spectrometer, tracer
-from octsim.optics.band import wavenumbers
+from octsim.instrument.instrument import Instrument
 from octsim.optics.two_beams import predicted_phase_slope
 from octsim.phase.derivatives import FRACTIONS, Array, derivative, stencil, wrapped
 from octsim.phase.estimators.series import series_phases
 from octsim.schemes.light import AccuracyStatus, Light
-from octsim.stages.sweep import focus_line
+from octsim.stages.focus_law import focus_line
 from octsim.studies.calibration.tolerances import PARAMETERS, moved, offsets_of
 from octsim.studies.sides import side_slopes
 
@@ -32,7 +31,7 @@ _CURVATURE_STEP = 4e-3
 class Look(NamedTuple):
     """A spectrum to be made: an instrument, a diameter and a focus, µm."""
 
-    instrument: Spectrometer
+    instrument: Instrument
     diameter: float
     focus: float
 
@@ -95,10 +94,10 @@ class _Bench(NamedTuple):
     """The instrument as it is, and as it is when each parameter is moved."""
 
     trace_at: Callable[[float, float], Light]
-    own: Spectrometer
-    rays: Spectrometer
+    own: Instrument
+    rays: Instrument
     offsets: dict[str, Array]
-    moved: dict[str, list[tuple[Spectrometer, float, float]]]
+    moved: dict[str, list[tuple[Instrument, float, float]]]
 
 
 def _bench(exact: Config, law_slope: float) -> _Bench:
@@ -108,12 +107,12 @@ def _bench(exact: Config, law_slope: float) -> _Bench:
         for name, changes in offsets.items()
     }
     return _Bench(
-        tracer(exact),
-        spectrometer(exact),
-        spectrometer(by_rays(exact, RAYS)),
+        Instrument(exact).light,
+        Instrument(exact),
+        Instrument(by_rays(exact, RAYS)),
         offsets,
         {
-            name: [(spectrometer(place.config), place.diameter, place.focus) for place in listed]
+            name: [(Instrument(place.config), place.diameter, place.focus) for place in listed]
             for name, listed in places.items()
         },
     )
@@ -123,7 +122,7 @@ def _measure(
     config: Config, bench: _Bench, diameter: float, focus: float, law_slope: float
 ) -> dict[str, Any]:
     """Measure what the calibration holds at one diameter."""
-    k, step = wavenumbers(config.spectrum), config.calibration.step
+    k, step = config.spectrum.wavenumbers(), config.calibration.step
     depth = config.scene.refractive_index.neuron * diameter
     offsets = stencil(diameter, step)
     bends = _CURVATURE_STEP * FRACTIONS
@@ -143,7 +142,9 @@ def _measure(
         ),
         *(Look(bench.rays, diameter + by, focus) for by in (-step, step)),
     ]
-    spectra, errors, status = zip(*(look.instrument(*look[1:]) for look in looks), strict=True)
+    spectra, errors, status = zip(
+        *(look.instrument.spectrum(*look[1:]) for look in looks), strict=True
+    )
     stack, num = np.stack(spectra), offsets.size
 
     def phases_of(spectra: Array, processing: Processing, *sizes: int) -> Array:
@@ -208,7 +209,7 @@ def _dataset(config: Config, diameters: Array, column: dict[str, Any]) -> xr.Dat
     missed = interpolation_error(diameters, slope)
     budget = np.abs(sensitivity) * tolerance
     error = np.sqrt((budget**2).sum(axis=1) + missed**2 + column["difference_error"] ** 2)
-    k = wavenumbers(config.spectrum)
+    k = config.spectrum.wavenumbers()
     status = ("diameter", *flags(AccuracyStatus, column.pop("accuracy_status")))
     law_slope = column.pop("slope")
     variables: dict[str, Any] = {
@@ -235,7 +236,6 @@ def _dataset(config: Config, diameters: Array, column: dict[str, Any]) -> xr.Dat
         "Change of the phase with the diameter, at a fixed focus and gap",
         variables,
         {"diameter": diameters, "parameter": list(PARAMETERS)},
-        __name__,
     )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from octsim.config.derive import changed, nested, part_of
 from octsim.config.models import Config
 from octsim.config.units import format_length
-from octsim.optics.detector import detector_radius
+from octsim.instrument.build import detector_of
 from octsim.phase.derivatives import Array, stencil
 
 
@@ -53,7 +53,7 @@ PARAMETERS: Mapping[str, Parameter] = {
 def value_of(config: Config, name: str) -> float:
     """Give what a parameter is in a config; 0 for what is no part of one."""
     if name == "detector_radius":
-        return detector_radius(config)
+        return detector_of(config).radius
     part: Any = config
     for key in PARAMETERS[name].key.split(".") if PARAMETERS[name].key else ():
         part = getattr(part, key)

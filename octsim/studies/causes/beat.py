@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from octsim.base.errors import OctsimError
 from octsim.base.threads import each
 from octsim.config.models import Config
-from octsim.instrument.instrument import tracer
-from octsim.optics.band import wavenumbers
+from octsim.instrument.instrument import Instrument
 from octsim.schemes.field_sum import field
 from octsim.schemes.light import Light
 from octsim.studies.sides import GLASS, SIDES, rays_on
@@ -93,7 +92,7 @@ def fields_at(
     OctsimError
         If no light comes back from one of the sides: nothing beats then.
     """
-    trace_at, k = tracer(config), wavenumbers(config.spectrum)
+    trace_at, k = Instrument(config).light, config.spectrum.wavenumbers()
     points = list(zip(diameters.tolist(), foci.tolist(), strict=True))
     found = Fields(
         *np.stack(list(each(lambda p: _summed(trace_at(*p), k), points, threads)), axis=1)

@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 from octsim.config.derive import by_accuracy
 from octsim.config.models import Config, FocusLine
 from octsim.datasets.files import make
-from octsim.optics.band import wavenumbers
 from octsim.optics.two_beams import aliasing_step, predicted_phase_slope
+from octsim.phase.slopes import trend
 from octsim.phase.transform import centred_by
-from octsim.stages.phase_slope import trend
-from octsim.stages.sweep import focus_line, sweep_foci
+from octsim.stages.focus_law import focus_line, sweep_foci
 from octsim.studies.causes.beat import Parts, fields_at, parts
 from octsim.studies.causes.beat_slope import beat_slopes
 from octsim.studies.causes.switches import (
@@ -107,7 +106,7 @@ def causes(config: Config, law: xr.Dataset | None = None, threads: int = 1) -> x
     """
     foci, line = sweep_foci(config, law), focus_line(config, law)
     spectra = _Spectra(config, line, threads, config.sweep.diameters.values())
-    k, n_neuron = wavenumbers(config.spectrum), config.scene.refractive_index.neuron
+    k, n_neuron = config.spectrum.wavenumbers(), config.scene.refractive_index.neuron
     steps = _steps(spectra.diameter, aliasing_step(n_neuron, k[0], k[-1]))
     reading = Reading(config.processing, n_neuron, spectra.diameter, k)
     values = every_slope(spectra.chosen, reading)
@@ -143,7 +142,6 @@ def causes(config: Config, law: xr.Dataset | None = None, threads: int = 1) -> x
             "spike_neighbour": near,
             "wavenumber": k,
         },
-        __name__,
     )
 
 

@@ -12,8 +12,8 @@ from octsim.phase.estimators import estimate
 from octsim.phase.estimators.estimate import Array
 from octsim.phase.estimators.likelihood import Model, maximum_likelihood
 from octsim.phase.estimators.series import series_phases
+from octsim.phase.slopes import phase_slopes, slope_of
 from octsim.phase.transform import fourier_components
-from octsim.stages.phase_slope import phase_slopes, slope_of
 
 LIKELIHOOD = "maximum_likelihood"
 COMMON = "sinusoid_common_envelope"

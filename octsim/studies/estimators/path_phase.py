@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.phase.slopes import slope_of
 from octsim.schemes.light import Light
-from octsim.stages.phase_slope import slope_of
 from octsim.studies.sides import field_of, rays_on
 
 Array = NDArray[np.float64]

@@ -11,13 +11,12 @@ from octsim.config.derive import by_accuracy, by_rays
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.datasets.files import make
-from octsim.instrument.instrument import spectrometer, tracer
-from octsim.optics.band import wavenumbers
+from octsim.instrument.instrument import Instrument
 from octsim.phase.estimators.estimate import Array, middle
 from octsim.phase.estimators.likelihood import Model
 from octsim.phase.modelled_spectra import MODEL_ACCURACY, model_of_sweep
-from octsim.stages.phase_slope import trend
-from octsim.stages.sweep import sweep_foci
+from octsim.phase.slopes import trend
+from octsim.stages.focus_law import sweep_foci
 from octsim.studies.estimators.contenders import (
     COMMON,
     CONTENDERS,
@@ -79,7 +78,7 @@ def estimators(
         its bound; and how another scene's spectra are misread.
     """
     diameter, foci = config.sweep.diameters.values(), sweep_foci(config, law)
-    k, compared = wavenumbers(config.spectrum), contenders(config)
+    k, compared = config.spectrum.wavenumbers(), contenders(config)
     band = Band(config.scene.refractive_index.neuron, k)
     scenes = others(config, foci, threads)
     model = model_of_sweep(config, foci, threads)
@@ -119,22 +118,21 @@ def estimators(
             "noise_diameter": _at_places(diameter),
             "scene": [one.name for one in scenes],
         },
-        __name__,
     )
 
 
 def _true_slopes(config: Config, diameter: Array, foci: Array, threads: int) -> dict[str, Any]:
-    trace_at = tracer(by_accuracy(config, MODEL_ACCURACY))
+    trace_at = Instrument(by_accuracy(config, MODEL_ACCURACY)).light
     points = zip(diameter.tolist(), foci.tolist(), strict=True)
     lights = list(each(lambda point: trace_at(*point), points, threads))
-    phase, mean = path_slopes(lights, diameter, middle(wavenumbers(config.spectrum)))
+    phase, mean = path_slopes(lights, diameter, middle(config.spectrum.wavenumbers()))
     return {"path_phase_slope": ("diameter", phase), "mean_path_slope": ("diameter", mean)}
 
 
 def _counted(config: Config, diameter: Array, foci: Array, threads: int) -> Array:
     """Trace the sweep by counted rays, as many as the run's, to spectra (D, K)."""
     counted = by_rays(config, config.tracing.rays)
-    look = spectrometer(counted)
+    look = Instrument(counted).spectrum
     points = zip(diameter.tolist(), foci.tolist(), strict=True)
     return np.stack(list(each(lambda point: look(*point)[0], points, threads)))
 

@@ -9,10 +9,8 @@ from numpy.typing import NDArray
 from octsim.base.errors import ConfigError
 from octsim.config.checks import rounding_remarks
 from octsim.config.models import Config
-from octsim.optics.band import wavenumbers
+from octsim.instrument.build import detector_of, scene_of
 from octsim.optics.beam import Beam
-from octsim.optics.detector import detector_of
-from octsim.optics.scene import neuron_on_glass
 from octsim.schemes.field_sum import intensity
 from octsim.studies.stability.exact import follow, numbers
 from octsim.studies.stability.matrix import Cell
@@ -138,7 +136,7 @@ def spectrum_sum(case: Case) -> Cost:
     The condition number is that of the paths' last digits in the sum, 2 k Σ|E Λ| Σ|E| / max I.
     """
     amplitude, path = case.found.amplitude, case.found.optical_path_length
-    k = wavenumbers(case.config.spectrum)
+    k = case.config.spectrum.wavenumbers()
     summed = intensity(amplitude, path, k)
     at = np.unique(np.linspace(0, k.size - 1, WAVENUMBERS).astype(int))
     if amplitude.size * at.size > 2_000_000:
@@ -174,7 +172,7 @@ def launch_error(case: Case, rays: list[int]) -> Cost:
 
 def single(case: Case, pairs: list[Pair]) -> Iterator[tuple[float, float]]:
     """Give the errors of float32 in phase (rad) and amplitude; infinite where a ray is lost."""
-    faces = faces_of(neuron_on_glass(case.config.scene, case.cell.diameter))
+    faces = faces_of(scene_of(case.config, case.cell.diameter))
     detector = detector_of(case.config)
     place = np.empty_like(case.beam.number)
     place[case.beam.number] = np.arange(place.size)

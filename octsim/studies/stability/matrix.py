@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from octsim.base.errors import ConfigError
 from octsim.config.load import load_config
 from octsim.config.models import Config
-from octsim.optics.beam import aperture_radius, vogel_spiral
+from octsim.instrument.build import detector_of
+from octsim.optics.beam import vogel_spiral
 from octsim.studies.stability.exact import follow, inputs_of
 
 Overlay = Mapping[str, Any]
@@ -61,13 +62,13 @@ class Cell:
 
 def spiral(config: Config, _: Cell) -> tuple[Positions, Positions]:
     """Give the positions of the config's own rays."""
-    radius = aperture_radius(config.objective, config.scene.refractive_index.glass)
+    radius = detector_of(config).objective_radius
     return vogel_spiral(config.tracing.rays, radius)
 
 
 def axial(config: Config, _: Cell) -> tuple[Positions, Positions]:
     """Give rays on the axis, in the planes x = 0 and y = 0, and a hair's breadth off them."""
-    radius = aperture_radius(config.objective, config.scene.refractive_index.glass)
+    radius = detector_of(config).objective_radius
     steps = np.concatenate(([0.0], radius * np.array([1e-300, 1e-17, 1e-12, 1e-6, 0.05, 0.5, 0.7])))
     x, y = np.meshgrid(steps, steps)
     return x.ravel(), y.ravel()
@@ -89,7 +90,7 @@ def beside_edge(
     """
 
     def find(config: Config, cell: Cell) -> tuple[Positions, Positions]:
-        radius = aperture_radius(config.objective, config.scene.refractive_index.glass)
+        radius = detector_of(config).objective_radius
         x, y = [], []
         for bearing in bearings:
             across = np.tan(bearing)

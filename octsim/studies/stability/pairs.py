@@ -7,10 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.config.models import Config
-from octsim.optics.band import wavenumbers
+from octsim.instrument.build import detector_of, scene_of
 from octsim.optics.beam import Beam, aim, vogel_beam
-from octsim.optics.detector import detector_of
-from octsim.optics.scene import neuron_on_glass
 from octsim.studies.stability.exact import (
     End,
     Inputs,
@@ -48,7 +46,7 @@ class Case:
 
 def traced(config: Config, beam: Beam, diameter: float, focus: float) -> Detections:
     """Trace some rays for a diameter and a focus (µm) as octsim does."""
-    scene = neuron_on_glass(config.scene, diameter)
+    scene = scene_of(config, diameter)
     return trace(scene, beam, detector_of(config), focus, config.tracing.max_intersections)
 
 
@@ -56,11 +54,12 @@ def prepared(cell: Cell, config: Config) -> Case:
     """Launch and trace a cell's rays as octsim does."""
     x, y = (cell.positions or spiral)(config, cell)
     if cell.positions is None:
-        beam = vogel_beam(config.objective, config.tracing, config.scene.refractive_index.glass)
+        detector = detector_of(config)
+        beam = vogel_beam(config.tracing.rays, detector.objective_radius, detector.focus_distance)
     else:
         launched = np.full(x.size, 1 / max(x.size, 1)), np.arange(x.size)
         beam = Beam(*aim(x, y, config.objective.focus_distance), *launched)
-    k_max = float(wavenumbers(config.spectrum)[-1])
+    k_max = float(config.spectrum.wavenumbers()[-1])
     found = traced(config, beam, cell.diameter, cell.focus)
     return Case(cell, config, x, y, beam, found, k_max)
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.config.models import Config
-from octsim.instrument.instrument import summer, tracer
+from octsim.instrument.instrument import Instrument
 from octsim.schemes.light import AccuracyStatus
 
 _REPEATS = 3
@@ -52,7 +52,7 @@ def sweep_cost(config: Config, diameters: NDArray[np.float64], foci: NDArray[np.
     diameters, foci : ndarray, shape (D,)
         Diameters and heights of the focus, µm.
     """
-    trace_at, sum_light = tracer(config), summer(config)
+    trace_at, sum_light = Instrument(config).light, Instrument(config).sum
     points = list(zip(diameters.tolist(), foci.tolist(), strict=True))
     before = _largest_resident_set()
 

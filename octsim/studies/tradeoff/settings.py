@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from octsim.config.derive import by_accuracy, by_rays, changed
-from octsim.config.models import PRESETS, Config
+from octsim.config.models import Config
+from octsim.schemes.table import PRESETS
 
 RAYS = (100, 300, 1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000)
 ACCURACIES = (

@@ -11,12 +11,12 @@ from octsim.base.threads import each
 from octsim.config.derive import by_accuracy, by_rays, changed, reference
 from octsim.config.models import Config, FocusLine
 from octsim.datasets.files import make
-from octsim.instrument.instrument import summer, tracer
+from octsim.instrument.instrument import Instrument
+from octsim.phase.slopes import phase_slopes
 from octsim.phase.transform import fourier_components
-from octsim.stages.focus import focus_sweep
-from octsim.stages.law import focus_law, gaussian_fits
-from octsim.stages.phase_slope import phase_slopes
-from octsim.stages.sweep import sweep_foci
+from octsim.stages.focus_law import focus_law, sweep_foci
+from octsim.stages.focus_sweep import focus_sweep
+from octsim.stages.gaussian_fits import gaussian_fits
 from octsim.studies.tradeoff.frontier import COUNTED, TARGETS, comparison, efficient
 from octsim.studies.tradeoff.measured_cost import Cost, apart, sweep_cost
 from octsim.studies.tradeoff.settings import (
@@ -69,7 +69,7 @@ def fitted_law(config: Config, threads: int) -> xr.Dataset:
 def exact_spectra(config: Config, line: FocusLine, threads: int) -> Array:
     """Trace and sum the reference of a config, (D, K), focused by a line."""
     converged = reference(config)
-    trace_at, sum_light = tracer(converged), summer(converged)
+    trace_at, sum_light = Instrument(converged).light, Instrument(converged).sum
     diameters = converged.sweep.diameters.values()
     points = zip(diameters.tolist(), line.at(diameters).tolist(), strict=True)
     return np.stack(list(each(lambda point: sum_light(trace_at(*point))[0], points, threads)))
@@ -149,7 +149,7 @@ def tradeoff(
     # compiled code goes to the processes with this one's memory
     for least in (by_rays(config, 1), by_accuracy(config, 0.1)):
         start = config.sweep.diameters.start
-        summer(least)(tracer(least)(start, start / 2))
+        Instrument(least).sum(Instrument(least).light(start, start / 2))
     converged = reference(config)
     law = work(fitted_law, converged, threads)
     sweep_foci(converged, law)  # says what is wrong with a law that does not serve
@@ -273,7 +273,6 @@ def _dataset(config: Config, listed: list[Setting], variables: dict[str, Any]) -
             "scheme": ("setting", [setting.config.tracing.scheme for setting in listed]),
             "target": [f"error of {COUNTED} rays", *(f"{target:g}" for target in TARGETS)],
         },
-        __name__,
     )
 
 

@@ -1,4 +1,4 @@
-"""Where to focus: Gaussians over the focus, and the line through their centres (figure 7)."""
+"""Where to focus: a Gaussian plus a constant, fitted over the focus of each diameter (figure 7)."""
 
 import warnings
 from enum import IntEnum
@@ -9,12 +9,11 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.optimize import OptimizeWarning, curve_fit
 
-from octsim.config.grid import Combination
 from octsim.config.models import Config
 from octsim.datasets.files import flags
 from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.reader import Stored
-from octsim.datasets.stage import Part, Stage, Stream
+from octsim.datasets.streams import Part, Stream, Streamed
 
 
 class FitStatus(IntEnum):
@@ -101,27 +100,7 @@ def fit_gaussian(focus: NDArray[np.float64], intensity: NDArray[np.float64]) -> 
     return GaussianFit(parameters, standard_errors, residual, FitStatus.FITTED)
 
 
-class Line(NamedTuple):
-    """A straight line, with standard errors; NaN where no degree of freedom is left."""
-
-    slope: float
-    intercept: float
-    slope_standard_error: float
-    intercept_standard_error: float
-
-
-def fit_line(x: NDArray[np.float64], y: NDArray[np.float64]) -> Line:
-    """Fit a straight line by unweighted least squares; NaN if any value is."""
-    if not np.isfinite(y).all():
-        return Line(np.nan, np.nan, np.nan, np.nan)
-    if x.size == 2:
-        slope, intercept = np.polyfit(x, y, 1)
-        return Line(slope, intercept, np.nan, np.nan)
-    (slope, intercept), covariance = np.polyfit(x, y, 1, cov=True)
-    return Line(slope, intercept, *np.sqrt(np.diag(covariance)))
-
-
-@Stage
+@Streamed
 def gaussian_fits(config: Config, sweep: xr.Dataset) -> Stream:
     """Fit a Gaussian plus a constant over the foci of each diameter.
 
@@ -131,7 +110,7 @@ def gaussian_fits(config: Config, sweep: xr.Dataset) -> Stream:
         centre, width, amplitude, offset, their standard errors, residual and status (diameter).
     """
     title = "Gaussian plus a constant, fitted to the intensity over the focus"
-    layout = Layout("gaussian_fits", config, title, __name__, _diameters)
+    layout = Layout("gaussian_fits", config, title, law_diameters)
     stored = Stored(sweep, "focus_sweep", config, layout)
     return Stream(
         layout,
@@ -139,7 +118,8 @@ def gaussian_fits(config: Config, sweep: xr.Dataset) -> Stream:
     )
 
 
-def _diameters(config: Config) -> dict[str, Coordinate]:
+def law_diameters(config: Config) -> dict[str, Coordinate]:
+    """Return the coordinates of a dataset over the focus law's diameters."""
     return {"diameter": ("diameter", config.focus_law.diameters.values())}
 
 
@@ -156,27 +136,3 @@ def _fitted(sweep: xr.Dataset) -> dict[str, object]:
     variables["residual"] = ("diameter", [fit.residual for fit in fits])
     variables["status"] = ("diameter", *flags(FitStatus, np.array([fit.status for fit in fits])))
     return variables
-
-
-@Stage
-def focus_law(config: Config, fits: xr.Dataset) -> Stream:
-    """Fit a straight line through the fitted centres (figure 7).
-
-    Returns
-    -------
-    Dataset
-        slope, intercept and their standard errors, NaN if a fit has no peak; status(diameter) of
-        the fits.
-    """
-    title = "Focus of greatest intensity as a linear function of the diameter"
-    layout = Layout("focus_law", config, title, __name__, _diameters)
-    stored = Stored(fits, "gaussian_fits", config, layout)
-
-    def line(at: Combination) -> dict[str, object]:
-        part = stored.part(at)
-        fitted = fit_line(part["diameter"].values, part["centre"].values)
-        status = part["status"]
-        own: dict[str, object] = {name: ((), value) for name, value in fitted._asdict().items()}
-        return own | {"status": ("diameter", *flags(FitStatus, status.values))}
-
-    return Stream(layout, (Part(at, 0, 1, line(at)) for at in layout.combinations))

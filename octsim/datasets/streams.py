@@ -38,7 +38,7 @@ class Stream(NamedTuple):
     """What it holds, made when it is asked for."""
 
 
-class Store(Protocol):
+class Sink(Protocol):
     """Where parts are put together."""
 
     def create(
@@ -57,7 +57,7 @@ class Store(Protocol):
         """Add values to a ragged variable."""
 
 
-def pour(stream: Stream, store: Store) -> None:
+def pour(stream: Stream, sink: Sink) -> None:
     """Put every part of a stage where it belongs.
 
     A variable along a dimension without a coordinate is ragged: its values stand one after the
@@ -71,15 +71,15 @@ def pour(stream: Stream, store: Store) -> None:
                 known.add(name)
                 named = tuple(map(layout.dimension, own))
                 whole = named if ragged else (*layout.grid_dimensions, *named)
-                store.create(name, whole, values.dtype, meaning(name) | (rest[0] if rest else {}))
+                sink.create(name, whole, values.dtype, meaning(name) | (rest[0] if rest else {}))
             if ragged:
-                store.append(name, values)
+                sink.append(name, values)
                 continue
             spans = [
                 slice(first := part.first if d == layout.swept else 0, first + size)
                 for d, size in zip(own, values.shape, strict=True)
             ]
-            store.put(name, (*part.at.position, *spans), values)
+            sink.put(name, (*part.at.position, *spans), values)
 
 
 def arrays(variables: Mapping[str, Any]) -> Iterator[tuple[str, tuple[Any, ...]]]:
@@ -129,11 +129,11 @@ def gathered(stream: Stream) -> xr.Dataset:
     layout = stream.layout
     memory = _Memory(layout.sizes)
     pour(stream, memory)
-    described = attributes(layout.stage, layout.config, layout.title, layout.module)
+    described = attributes(layout.stage, layout.config, layout.title)
     return xr.Dataset(memory.variables(), layout.coordinates, described)
 
 
-class Stage(Generic[Parameters]):
+class Streamed(Generic[Parameters]):
     """A stage: called, it gives its dataset in memory; `stream` gives it part by part."""
 
     def __init__(self, stream: Callable[Parameters, Stream]) -> None:

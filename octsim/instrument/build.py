@@ -1,0 +1,35 @@
+"""A config as optics: its scene, its objective and its detector. It becomes that nowhere else."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from octsim.optics.detector import Detector, fibre_detector
+from octsim.optics.scene import Scene, neuron_on_glass
+from octsim.schemes.light import Optics
+
+if TYPE_CHECKING:
+    # what light is traced through follows from values of the config, not from how it is read
+    from octsim.config.models import Config
+
+
+def detector_of(config: Config) -> Detector:
+    """Return the objective as a receiver, and the fibre."""
+    objective = config.objective
+    return fibre_detector(
+        objective.numerical_aperture, config.scene.refractive_index.glass,
+        objective.focus_distance, objective.magnification, config.detector.core_diameter,
+    )  # fmt: skip
+
+
+def scene_of(config: Config, diameter: float) -> Scene:
+    """Return the scene with a neuron of a diameter, µm."""
+    index = config.scene.refractive_index
+    return neuron_on_glass(index.glass, index.water, index.neuron, config.scene.gap, diameter)
+
+
+def optics_of(config: Config) -> Optics:
+    """Return what every scheme works with."""
+    k = config.spectrum.wavenumbers()
+    band = float(k[0]), float(k[-1])
+    return Optics(detector_of(config), band, config.tracing.max_intersections)

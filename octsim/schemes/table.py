@@ -1,0 +1,116 @@
+"""The table of schemes: how the light of a point is found. A scheme is a row here and a module.
+
+A scheme's module has the functions ``tracer`` and ``field``; `Scheme` says what they take
+and return. Modules are imported when they are first used, so that neither a digest of sources nor a
+process that needs one scheme depends on the others.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from octsim.schemes.cost import PointCost, of_paths, of_rays
+
+if TYPE_CHECKING:
+    # the config reads this table, and needs no compiler for it
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from octsim.schemes.light import Field, Light, LightAt, Optics, Options
+
+
+@dataclass(frozen=True)
+class Scheme:
+    """One way to find the light of a point."""
+
+    name: str
+    """As in ``tracing.scheme``."""
+    module: str
+    """Where its functions are."""
+    options: tuple[str, ...]
+    """Keys of the section ``tracing`` that its light depends on, besides the instrument's."""
+    effort: str
+    """The one of them that decides what a point takes."""
+    cost: Callable[[Options], PointCost]
+    """Returns what a point takes, typically; the same on all machines."""
+    counts_rays: bool = False
+    """Whether its light is a number of rays, each of which is counted."""
+    controls_error: bool = False
+    """Whether it reaches ``tracing.accuracy``, in one band, or says that it does not."""
+    steepest: float = math.inf
+    """Numerical aperture over the water's index above which it can miss light."""
+    presets: Mapping[str, Mapping[str, float]] = dataclasses.field(default_factory=dict)
+    """Options that a name stands for."""
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Dotted keys of the config that its light depends on, besides the instrument's."""
+        # an accuracy is one in a band; rays that are counted serve any
+        band = ("spectrum.wavelength",) if self.controls_error else ()
+        return (*(f"tracing.{name}" for name in self.options), *band)
+
+    @property
+    def summing_keys(self) -> tuple[str, ...]:
+        """Dotted keys, besides the spectrum's, that its field over the wavenumbers depends on."""
+        return ("tracing.accuracy",) if self.controls_error else ()
+
+    def chosen(self, tracing: object) -> Options:
+        """Return the values that a section ``tracing`` has for the scheme's options."""
+        return {name: getattr(tracing, name) for name in self.options}
+
+    def tracer(self, optics: Optics, options: Options) -> LightAt:
+        """Return the function of scene and focus (µm) that finds the light of a point."""
+        found: LightAt = self._functions.tracer(optics, options)
+        return found
+
+    def field(self, light: Light, wavenumber: NDArray[np.float64], options: Options) -> Field:
+        """Return the field of some light at evenly spaced wavenumbers (K,), 1/µm."""
+        found: Field = self._functions.field(light, wavenumber, options)
+        return found
+
+    def rate_name(self, options: Options) -> str:
+        """Name the points that take about the same."""
+        return f"{self.name} {options[self.effort]}"
+
+    @property
+    def _functions(self) -> Any:
+        return import_module(self.module)
+
+
+COUNTED_RAYS = Scheme(
+    name="vogel",
+    module="octsim.schemes.vogel",
+    options=("rays", "min_amplitude"),
+    effort="rays",
+    cost=of_rays,
+    counts_rays=True,
+)
+"""The thesis's: a sunflower spiral of rays, each followed through the whole tree."""
+
+LIGHT_PATHS = Scheme(
+    name="paths",
+    module="octsim.schemes.paths.scheme",
+    options=("accuracy",),
+    effort="accuracy",
+    cost=of_paths,
+    controls_error=True,
+    steepest=0.92,
+    presets={
+        "draft": {"accuracy": 3e-2}, "standard": {"accuracy": 1e-4}, "reference": {"accuracy": 1e-8}
+    },
+)  # fmt: skip
+"""Each light path integrated over the aperture, to a stated accuracy."""
+
+SCHEMES: Mapping[str, Scheme] = {row.name: row for row in (COUNTED_RAYS, LIGHT_PATHS)}
+"""Every scheme by its name; the first is the thesis's."""
+PRESETS: Mapping[str, Mapping[str, Any]] = {
+    name: {"scheme": row.name, **options}
+    for row in SCHEMES.values()
+    for name, options in row.presets.items()
+}
+"""Points of the trade of cost for accuracy, each a scheme and its options."""

@@ -1,0 +1,127 @@
+"""The focus law: a straight line through the foci of greatest intensity (figure 7)."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from octsim.base.errors import OctsimError
+from octsim.config.grid import Combination
+from octsim.config.models import Config, FocusLine
+from octsim.datasets.files import flags
+from octsim.datasets.layout import Layout
+from octsim.datasets.reader import Stored
+from octsim.datasets.streams import Part, Stream, Streamed
+from octsim.stages.gaussian_fits import FitStatus, law_diameters
+
+
+class Line(NamedTuple):
+    """A straight line, with standard errors; NaN where no degree of freedom is left."""
+
+    slope: float
+    intercept: float
+    slope_standard_error: float
+    intercept_standard_error: float
+
+
+def fit_line(x: NDArray[np.float64], y: NDArray[np.float64]) -> Line:
+    """Fit a straight line by unweighted least squares; NaN if any value is."""
+    if not np.isfinite(y).all():
+        return Line(np.nan, np.nan, np.nan, np.nan)
+    if x.size == 2:
+        slope, intercept = np.polyfit(x, y, 1)
+        return Line(slope, intercept, np.nan, np.nan)
+    (slope, intercept), covariance = np.polyfit(x, y, 1, cov=True)
+    return Line(slope, intercept, *np.sqrt(np.diag(covariance)))
+
+
+@Streamed
+def focus_law(config: Config, fits: xr.Dataset) -> Stream:
+    """Fit a straight line through the fitted centres (figure 7).
+
+    Returns
+    -------
+    Dataset
+        slope, intercept and their standard errors, NaN if a fit has no peak; status(diameter) of
+        the fits.
+    """
+    title = "Focus of greatest intensity as a linear function of the diameter"
+    layout = Layout("focus_law", config, title, law_diameters)
+    stored = Stored(fits, "gaussian_fits", config, layout)
+
+    def line(at: Combination) -> dict[str, object]:
+        part = stored.part(at)
+        fitted = fit_line(part["diameter"].values, part["centre"].values)
+        status = part["status"]
+        own: dict[str, object] = {name: ((), value) for name, value in fitted._asdict().items()}
+        return own | {"status": ("diameter", *flags(FitStatus, status.values))}
+
+    return Stream(layout, (Part(at, 0, 1, line(at)) for at in layout.combinations))
+
+
+def sweep_foci(config: Config, law: xr.Dataset | None) -> NDArray[np.float64]:
+    """Give the focus of each diameter of the sweep, from the given line or the fitted law.
+
+    Parameters
+    ----------
+    config : Config
+        Its ``sweep.focus`` decides.
+    law : Dataset or None
+        The fitted law; needed only where ``sweep.focus`` is ``law``.
+
+    Returns
+    -------
+    ndarray, shape (D,)
+        Heights of the focus, µm.
+
+    Raises
+    ------
+    OctsimError
+        If the law is needed and could not be fitted, or asks for a focus out of the objective's
+        reach.
+    """
+    diameters = config.sweep.diameters.values()
+    if isinstance(config.sweep.focus, FocusLine):
+        return config.sweep.focus.at(diameters)
+    remedy = "or give one as sweep.focus: {slope: 0.581, intercept: 69 nm}"
+    if law is None:
+        raise OctsimError(f"sweep.focus: 'law' given, so fit and pass the focus law, {remedy}")
+    if not np.isfinite(law["slope"]):
+        named = law["status"].attrs["flag_meanings"].split()
+        statuses = [named[status] for status in law["status"].values]
+        failed = ", ".join(
+            f"{diameter:.4g} um ({status})"
+            for diameter, status in zip(law["diameter"].values, statuses, strict=True)
+            if status != "fitted"
+        )
+        raise OctsimError(
+            f"sweep.focus: 'law' given, but there is no law: no Gaussian fits at {failed}; change "
+            f"focus_law.diameters, or give focus_law.fraction a wider range or more steps, {remedy}"
+        )
+    foci = FocusLine.fitted(law).at(diameters)
+    if not foci.max() < config.objective.focus_distance:
+        raise OctsimError(
+            f"objective.focus_distance: {config.objective.focus_distance} um given, but the fitted "
+            f"law asks for a focus at {foci.max():.6g} um; raise the distance, {remedy}"
+        )
+    return foci
+
+
+def focus_line(config: Config, law: xr.Dataset | None) -> FocusLine:
+    """Give the line that the focus follows: the config's, or the fitted law.
+
+    Raises
+    ------
+    OctsimError
+        If the law is needed and could not be fitted, or there are several.
+    """
+    if isinstance(config.sweep.focus, FocusLine):
+        return config.sweep.focus
+    if law is not None and law["slope"].dims:
+        raise OctsimError(
+            "grid: given, and so several focus laws; do this without a grid, or give one focus as "
+            "sweep.focus: {slope: 0.581, intercept: 69 nm}"
+        )
+    sweep_foci(config, law)  # says what is wrong with a law that does not serve
+    return FocusLine.fitted(law)

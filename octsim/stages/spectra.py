@@ -1,0 +1,107 @@
+"""Spectra: the detected light of each diameter, summed over the wavenumbers (figure 8)."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from octsim.base.threads import each_block
+from octsim.config.grid import Combination
+from octsim.config.models import Config
+from octsim.datasets.files import flags
+from octsim.datasets.layout import Coordinate, Layout, filling
+from octsim.datasets.reader import Stored
+from octsim.datasets.streams import Part, Stream, Streamed
+from octsim.instrument.instrument import Instrument
+from octsim.schemes.light import AccuracyStatus, Light
+from octsim.schemes.table import COUNTED_RAYS
+from octsim.stages.detections import stored_light
+from octsim.stages.workload import point_cost, points_per_block
+
+_ROUGH = 0.1  # of the largest intensity; an error that a slope does not survive
+
+
+@Streamed
+def spectra(config: Config, detected: xr.Dataset, threads: int = 1) -> Stream:
+    """Sum the detected rays of each diameter to a spectrum.
+
+    Returns
+    -------
+    Dataset
+        intensity(diameter, wavenumber) and focus(diameter), with the estimated error of the
+        intensity and whether that is as asked (diameter).
+    """
+
+    def own(config: Config) -> dict[str, Coordinate]:
+        return {
+            "diameter": ("diameter", config.sweep.diameters.values()),
+            "wavenumber": ("wavenumber", config.spectrum.wavenumbers()),
+        }
+
+    title = "Spectrum of the detected light, for each diameter"
+    layout = Layout("spectra", config, title, own, "diameter")
+    return Stream(layout, _summed(layout, Stored(detected, "detections", config, layout), threads))
+
+
+def _summed(layout: Layout, stored: Stored, threads: int) -> Iterator[Part]:
+    parts: dict[int, xr.Dataset] = {}
+
+    def points_of(block: tuple[Combination, slice]) -> Iterator[tuple[Instrument, Light]]:
+        at, span = block
+        part = stored.part(at, span)
+        parts[id(block)] = part[["accuracy_status", "focus"]]
+        instrument = Instrument(at.config)
+        return ((instrument, light) for light in stored_light(part))
+
+    def most(config: Config) -> int:
+        return points_per_block(8 * config.spectrum.samples + point_cost(config).size)
+
+    blocks = list(layout.blocks(most))
+    for block, found in each_block(lambda p: p[0].sum(p[1]), blocks, points_of, threads):
+        (at, span), part = block, parts.pop(id(block))
+        intensity, error, _ = zip(*found, strict=True)
+        status = part["accuracy_status"].values
+        # the error is judged at the samples themselves
+        late = np.array(error) > at.config.tracing.accuracy
+        reached = status == AccuracyStatus.REACHED
+        status = np.where(reached & late, AccuracyStatus.NOT_REACHED, status)
+        nothing = np.where(status == AccuracyStatus.NO_FOCUS, np.nan, 0.0)
+        variables = {
+            "intensity": (("diameter", "wavenumber"), np.stack(intensity) + nothing[:, None]),
+            "intensity_error": ("diameter", np.array(error) + nothing),
+            "accuracy_status": ("diameter", *flags(AccuracyStatus, status)),
+            "focus": ("diameter", part["focus"].values),
+        }
+        yield Part(at, span.start, len(found), variables)
+
+
+def doubts(measured: xr.Dataset) -> list[str]:
+    """Say, a line each, where a run's spectra are not what one would want."""
+    status, error = measured["accuracy_status"].values, measured["intensity_error"].values
+    none = status == AccuracyStatus.NO_FOCUS
+    fine = (AccuracyStatus.REACHED, AccuracyStatus.NOT_CONTROLLED, filling(status.dtype))
+    missed = ~np.isin(status, fine) & ~none
+    rough = (status == AccuracyStatus.NOT_CONTROLLED) & (error > _ROUGH)
+    said = []
+    if missed.any():
+        said.append(
+            f"the accuracy is not, or not surely, reached at {missed.sum()} of {missed.size} "
+            f"points (accuracy_status says where and why; estimated error up to "
+            f"{error[missed].max():.2g}): compare with tracing.scheme "
+            f"{COUNTED_RAYS.name}, or ask for less by tracing.accuracy"
+        )
+    if rough.any():
+        said.append(
+            f"the estimated error of the intensity is above {_ROUGH} of its largest at "
+            f"{rough.sum()} of {rough.size} points (intensity_error; up to "
+            f"{error[rough].max():.2g}), so their slopes mean little: raise tracing.rays, or give "
+            "tracing.preset"
+        )
+    if none.any():
+        laws = none.reshape(-1, none.shape[-1]).all(axis=1)
+        said.append(
+            f"there is no focus law at {laws.sum()} of {laws.size} combinations, which are NaN "
+            "(focus_law.nc has the status of each fit): give focus_law.fraction a wider range or "
+            "more steps"
+        )
+    return said
