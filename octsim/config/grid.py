@@ -1,10 +1,10 @@
 """A config that varies its keys: the axes of the grid, and the config at each combination."""
 
+import itertools
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-import numpy as np
 import yaml
 
 from octsim.base.errors import ConfigError
@@ -91,7 +91,7 @@ def combinations(config: Config, *keys: str) -> Iterator[Combination]:
     """Give every combination of the grid, as far as it varies some keys: the last axis fastest."""
     along = axes(config, *keys)
     base = {**config.to_dict(), "grid": {}}
-    for position in np.ndindex(*(len(axis.rows) for axis in along)):
+    for position in itertools.product(*(range(len(axis.rows)) for axis in along)):
         values = {
             key: value
             for axis, row in zip(along, position, strict=True)
