@@ -41,7 +41,8 @@ def figure_10(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
     figure = Figure()
     axes = figure.subplots()
     diameter = fourier["diameter"]
-    _draw_components(axes, diameter.values, slopes["strongest_component"].values, fourier["magnitude"])
+    strongest = slopes["strongest_component"].values
+    _draw_components(axes, diameter.values, strongest, fourier["magnitude"])
     axes.set_xlabel(label(diameter))
     axes.set_ylabel(label(fourier["magnitude"], "magnitude (sum over the samples)"))
     axes.set_title(title(slopes, "Magnitude (solid where strongest)"))

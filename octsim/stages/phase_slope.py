@@ -25,8 +25,9 @@ def phase_slope(config: Config, transformed: xr.Dataset) -> Stream:
     Returns
     -------
     Dataset
-        phase_slope, strongest_component and ideal_phase_slope (diameter), component_phase_slope(diameter,
-        component), predicted_phase_slope, and the thesis's summary figures as scalars.
+        phase_slope, strongest_component and ideal_phase_slope (diameter),
+        component_phase_slope(diameter, component), predicted_phase_slope, and the thesis's summary
+        figures as scalars.
     """
 
     def own(config: Config) -> dict[str, Coordinate]:
