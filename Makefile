@@ -1,7 +1,9 @@
 # make results [CONFIG=mine.yaml] [CORES=2]   every dataset and figure of a run
 # make archive [CONFIG=mine.yaml]             the run as one file, for a data repository
 # make reproduce FILE=thesis.zip INTO=folder  an archive, a run or a dataset made anew there, and compared
-# make test                                   the test suite
+# make test                                   the test suite, but for trials that take long
+# make test-all                               the whole of it
+# make test-processors                        tests of numbers, as other processors compute them
 # make lint                                   formatting, style and types
 # make docs                                   the parts of docs/ that are made
 # make bench                                  speed, as ratios within one run
@@ -30,7 +32,7 @@ except octsim.ConfigError as error:
 endef
 export CHECK
 
-.PHONY: results archive reproduce test lint format docs bench bench-sweeps bench-peers kills lock \
+.PHONY: results archive reproduce test test-all test-processors lint format docs bench bench-sweeps bench-peers kills lock \
 	slurm test-slurm bench-slurm clean
 results: .venv/run
 	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
@@ -45,7 +47,13 @@ reproduce: .venv/run
 	@$(BIN)/python -m octsim.cli.reproduce "$(FILE)" "$(INTO)" --cores $(CORES) $(TOLERANCE:%=--tolerance %)
 
 test: .venv/dev
+	$(BIN)/pytest -n 2 -m "not trial"
+
+test-all: .venv/dev
 	$(BIN)/pytest -n 2
+
+test-processors: .venv/dev
+	.ci/processors
 
 lint: .venv/dev
 	$(BIN)/ruff check

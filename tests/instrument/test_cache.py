@@ -182,7 +182,11 @@ def test_processes_killed_at_any_moment_leave_no_wrong_value(file: Path) -> None
         running[which].send_signal(signal.SIGKILL)
         running[which].wait()
         running[which] = start(file, 3 + kill)
-    time.sleep(0.5)
+    entries = 0
+    while entries <= 50:  # however slow the machine is
+        time.sleep(0.05)
+        with PointCache(file, GIGABYTES) as cache:
+            entries = right(cache, ENTRIES)
     for process in running:
         process.kill()
         process.wait()

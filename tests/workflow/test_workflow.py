@@ -174,7 +174,18 @@ def test_keys_of_other_targets_rerun_nothing_of_a_run(law: Checkout, given: Chec
     assert given.would_run(merged(TINY, GIVEN, OTHERS)) == set()
 
 
-@pytest.mark.parametrize("key", EDITS)
+def _first_of_each_kind() -> list[Any]:
+    """Give every key; those that rerun what another does are trials."""
+    seen: list[tuple[set[str], set[str]]] = []
+    found = []
+    for key, (_, *reruns) in EDITS.items():
+        kind = (reruns[0], reruns[1])
+        found.append(pytest.param(key, marks=[pytest.mark.trial] if kind in seen else []))
+        seen.append(kind)
+    return found
+
+
+@pytest.mark.parametrize("key", _first_of_each_kind())
 def test_an_edit_reruns_only_what_reads_the_key(key: str, law: Checkout, given: Checkout) -> None:
     value, with_law, with_focus = EDITS[key]
     edit: Any = value
@@ -423,6 +434,7 @@ def test_points_are_kept_for_other_runs_and_for_going_back(tmp_path: Path) -> No
         assert sum(sum(one.values()) for one in found.values()) == (49 if traced == 8 else 41)
 
 
+@pytest.mark.trial
 def test_no_result_depends_on_the_cache(law: Checkout, tmp_path: Path) -> None:
     checkout = Checkout(tmp_path)
     without = merged(TINY, {"cache": {"gigabytes": 0}})
@@ -432,6 +444,7 @@ def test_no_result_depends_on_the_cache(law: Checkout, tmp_path: Path) -> None:
     assert {one["points_from_cache"] for one in counts(checkout, "tiny").values()} == {0}
 
 
+@pytest.mark.trial
 def test_a_scattered_run_is_the_same_bits_and_goes_on_from_its_shares(
     grid: Checkout, tmp_path: Path
 ) -> None:
