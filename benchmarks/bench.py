@@ -23,8 +23,8 @@ from trees import NoCompilerError, scalar_tree, simd_tree
 import octsim
 from octsim.base.threads import each
 from octsim.datasets.files import write
-from octsim.instrument.cache import opened
 from octsim.instrument.instrument import tracer
+from octsim.instrument.point_store import PointStore
 from octsim.instrument.points import Points
 from octsim.optics.band import wavenumbers
 from octsim.optics.beam import vogel_beam
@@ -125,11 +125,9 @@ def spectrum_sum() -> tuple[float, float]:
 def point_from_cache() -> float:
     """Measure what a point from the cache takes, over tracing it."""
     config = octsim.load_config()
-    with tempfile.TemporaryDirectory() as folder, opened(Path(folder) / "points", 1) as cache:
-        points = Points(cache)
-        kept, traced = points.tracer(config), tracer(config)
+    with tempfile.TemporaryDirectory() as folder:
+        kept, traced = Points(PointStore(Path(folder), 1)).tracer(config), tracer(config)
         kept(1.4, 0.876)
-        points.keep()
         works: dict[str, Work] = {
             "kept": partial(kept, 1.4, 0.876), "traced": partial(traced, 1.4, 0.876),
         }  # fmt: skip

@@ -11,8 +11,7 @@ from octsim.base.errors import ConfigError
 from octsim.config.grid import axes, combinations
 from octsim.config.models import Config
 from octsim.datasets.catalog import keys_behind
-from octsim.instrument.cache import opened
-from octsim.instrument.cacheplace import cache_file
+from octsim.instrument.point_store import opened
 
 _RAY_BYTES = 32  # of the four numbers that are kept of a detected ray
 _PATHS = {"vogel": 40, "paths": 12}  # that a sweep has, about
@@ -186,23 +185,20 @@ def expected(config: Config) -> Estimate:
     Raises
     ------
     CacheError
-        If the file of the cache is none that can be used.
+        If what the cache's name stands for is none that can be used.
     """
     try:
-        file = cache_file(config.cache.file)
+        store = opened(config.cache)
     except ConfigError:  # what is set for a cluster's jobs need not be where they are sent from
-        return estimate(config, lambda _: None)
-    if not file.exists():
-        return estimate(config, lambda _: None)
-    with opened(file, config.cache.gigabytes) as cache:
+        store = None
 
-        def measured(name: str) -> PointCost | None:
-            rate = cache.rates(name)
-            if rate is None or rate.points < _ENOUGH:
-                return None
-            return PointCost(rate.bytes / rate.points, rate.cpu_seconds / rate.points)
+    def measured(name: str) -> PointCost | None:
+        rate = store.rates(name) if store else None
+        if rate is None or rate.points < _ENOUGH:
+            return None
+        return PointCost(rate.bytes / rate.points, rate.cpu_seconds / rate.points)
 
-        return estimate(config, functools.cache(measured))
+    return estimate(config, functools.cache(measured))
 
 
 def check_budget(config: Config, cost: Cost, folder: Path) -> None:

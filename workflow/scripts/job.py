@@ -82,8 +82,7 @@ def trace(snakemake: Any, config: Config, stage: "Callable[[Points, Share], Stre
     """
     # numba's import is not for jobs that trace nothing
     from octsim.datasets.writer import write_stream
-    from octsim.instrument.cache import opened
-    from octsim.instrument.cacheplace import cache_file
+    from octsim.instrument.point_store import opened
     from octsim.instrument.points import Points
     from octsim.stages.progress import watched
     from octsim.stages.scatter import WHOLE, Share, gathered, notes_of, write_share
@@ -94,16 +93,15 @@ def trace(snakemake: Any, config: Config, stage: "Callable[[Points, Share], Stre
         _count(snakemake, notes_of(shares))
         return
     number, of = map(int, (snakemake.wildcards.get(name, 1) for name in ("number", "of")))
-    with opened(cache_file(config.cache.file), config.cache.gigabytes) as cache:
-        whence = Points(cache)
-        stream = watched(stage(whence, Share(number, of)))
-        try:
-            if of > 1:
-                write_share(stream, Share(number, of), output, lambda: counts_of(whence))
-            else:
-                write_stream(stream, output)
-        finally:
-            whence.keep()
+    whence = Points(opened(config.cache))
+    stream = watched(stage(whence, Share(number, of)))
+    try:
+        if of > 1:
+            write_share(stream, Share(number, of), output, lambda: counts_of(whence))
+        else:
+            write_stream(stream, output)
+    finally:
+        whence.keep()
     if of == 1:
         _count(snakemake, counts_of(whence))
 
