@@ -120,7 +120,7 @@ bench-peers: .venv-peers/run
 	touch $@
 
 kills: .venv/dev
-	OCTSIM_KILLS=30 $(BIN)/pytest -n 2 tests/workflow/test_kill.py tests/instrument/test_cache.py -k killed
+	OCTSIM_KILLS=30 $(BIN)/pytest -n 2 tests/workflow/test_kill.py tests/instrument/test_point_store.py -k killed
 
 clean:
 	rm -rf .venv .venv-peers results .snakemake

@@ -202,7 +202,7 @@ def test_nothing_is_written_outside_the_folder_nor_run_from_the_file(
     (outside / "series.csv").write_text(SERIES)
 
     def change(config: dict[str, Any]) -> None:
-        config["cache"] = {"file": str(outside / "points.sqlite"), "gigabytes": 1.0}
+        config["cache"] = {"file": str(outside / "points"), "gigabytes": 1.0}
         config["expansion"]["series"] = str(outside / "series.csv")
 
     def edit(dataset: xr.Dataset) -> None:
@@ -218,7 +218,7 @@ def test_nothing_is_written_outside_the_folder_nor_run_from_the_file(
     assert all(name.startswith("again/") for name in new)
     code = files_in(ROOT / "octsim") | files_in(ROOT / "workflow")
     assert {name for name in code - before[1] if "__pycache__" not in name} == set()
-    assert (tmp_path / "again" / ".octsim" / "points.sqlite").is_file()
+    assert (tmp_path / "again" / ".octsim" / "points" / "octsim-points.json").is_file()
 
 
 @pytest.mark.parametrize(

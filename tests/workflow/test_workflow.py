@@ -3,7 +3,6 @@
 import json
 import os
 import shutil
-import sqlite3
 import subprocess
 import sys
 import zipfile
@@ -97,7 +96,7 @@ EDITS: dict[str, tuple[Any, set[str], set[str]]] = {
     "sweep.diameters": ({"num": 10}, SWEPT, SWEPT),
     "sweep.focus": ({"slope": 0.5, "intercept": "0.1 um"}, SWEPT, SWEPT),
     "grid.combine": ("zip", set(), set()),
-    "cache.file": ("other.sqlite", set(), set()),
+    "cache.file": ("other", set(), set()),
     "cache.gigabytes": (1, set(), set()),
     "budget.cpu_hours": (2, set(), set()),
     "budget.disk_gigabytes": (21, set(), set()),
@@ -467,21 +466,20 @@ def test_a_scattered_run_is_the_same_bits_and_goes_on_from_its_shares(
 
 @pytest.mark.parametrize("kind", ["foreign", "future"])
 def test_a_cache_that_is_none_is_refused_in_a_line_and_stays(kind: str, tmp_path: Path) -> None:
-    checkout, file = Checkout(tmp_path), tmp_path / ".octsim" / "points.sqlite"
+    checkout, folder = Checkout(tmp_path), tmp_path / ".octsim" / "points"
+    file = folder / "notes" if kind == "foreign" else folder / "octsim-points.json"
     if kind == "foreign":
-        file.parent.mkdir()
+        folder.mkdir(parents=True)
         file.write_text("somebody's notes")
     else:
         checkout.run(TINY, "--until", "focus_scan")
-        with sqlite3.connect(file) as database:
-            database.execute("PRAGMA user_version = 99")
-        database.close()
+        file.write_text(file.read_text().replace('"version": 2', '"version": 99'))
     before = file.read_bytes()
     done = checkout.snakemake(merged(TINY, {"run": "next"}))
     assert done.returncode != 0
     said = [line for line in done.stderr.splitlines() if line.startswith("octsim: ")]
     assert len(said) == 1
-    assert ".octsim/points.sqlite: " in said[0]
+    assert ".octsim/points: " in said[0]
     assert "Traceback" not in done.stderr
     assert file.read_bytes() == before
     assert not (tmp_path / "results" / "next").exists()
