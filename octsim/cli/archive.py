@@ -35,7 +35,7 @@ def add(commands: Any) -> None:
 
 def archive(given: Namespace) -> int:
     """Pack a run; say what a user should know of it on stderr."""
-    from octsim.archive.pack import pack, told_before
+    from octsim.archive.pack import pack, packed_config
     from octsim.archive.run_folder import run_in
     from octsim.config.load import load_config
     from octsim.config.models import Config
@@ -45,7 +45,7 @@ def archive(given: Namespace) -> int:
     run = run_in(folder).config
     named = given.file and given.file.expanduser()
     file = named or folder / f"{run.run}.zip"
-    overlay = read_overlay(given.config.expanduser()) if given.config else told_before(file)
+    overlay = read_overlay(given.config.expanduser()) if given.config else packed_config(file)
     said = load_config({key: part for key, part in overlay.items() if key == "archive"}).archive
     data = merge(run.to_dict(), {"archive": said.model_dump(mode="json")})
     packed = pack(folder, Config.model_validate(data), named)
