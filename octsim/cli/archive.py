@@ -1,7 +1,4 @@
-"""`octsim archive`, `octsim verify` and `octsim unpack`: a run as one file, checked to the bit.
-
-What does the work is imported when it is asked for: the other commands need no dataset's library.
-"""
+"""`octsim archive`, `octsim verify` and `octsim unpack`: a run as one file, checked to the bit."""
 
 import sys
 from argparse import Namespace
@@ -21,20 +18,20 @@ def add(commands: Any) -> None:
         help="whose section archive has title, creators, license and date (default: that of the "
         "archive which is replaced, where there is one)",
     )
-    parser.set_defaults(do=archive, failed=1)
+    parser.set_defaults(do=run_archive, failed=1)
     purpose = "check that an archive is as it was packed, to the last bit"
     parser = commands.add_parser("verify", help=purpose, description=purpose)
     parser.add_argument("path", type=Path, help="a zip, or the folder that it was unpacked to")
-    parser.set_defaults(do=verified, failed=1)
+    parser.set_defaults(do=run_verify, failed=1)
     purpose = "verify an archive, then unpack it"
     parser = commands.add_parser("unpack", help=purpose, description=purpose)
     parser.add_argument("file", type=Path, help="a zip")
     parser.add_argument("folder", type=Path, help="not there yet, or empty")
-    parser.set_defaults(do=unpacked, failed=1)
+    parser.set_defaults(do=run_unpack, failed=1)
 
 
-def archive(given: Namespace) -> int:
-    """Pack a run; say what a user should know of it on stderr."""
+def run_archive(given: Namespace) -> int:
+    """Pack a run; print what a user should know of it to stderr."""
     from octsim.archive.pack import pack, packed_config
     from octsim.archive.run_folder import run_in
     from octsim.config.load import load_config
@@ -55,7 +52,7 @@ def archive(given: Namespace) -> int:
     return 0
 
 
-def verified(given: Namespace) -> int:
+def run_verify(given: Namespace) -> int:
     """Verify an archive."""
     from octsim.archive.verify import verify
 
@@ -65,7 +62,7 @@ def verified(given: Namespace) -> int:
     return 0
 
 
-def unpacked(given: Namespace) -> int:
+def run_unpack(given: Namespace) -> int:
     """Unpack an archive."""
     from octsim.archive.verify import unpack
 

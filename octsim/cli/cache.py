@@ -5,11 +5,9 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from octsim.config.models import Cache
-from octsim.instrument.cache import clear, describe
-
-CACHE = Path(Cache().file)
-"""Where a checkout keeps its traced points."""
+CACHE = Path(".octsim/points.sqlite")
+"""Where a checkout keeps its traced points: the default of the config's `cache.file`, of which it
+takes half a second to ask the config."""
 
 
 def add(commands: Any) -> None:
@@ -28,7 +26,9 @@ def add(commands: Any) -> None:
 
 
 def show_cache(given: Namespace) -> int:
-    """Say what a cache holds, in a few lines."""
+    """Print what a cache holds, in a few lines."""
+    from octsim.instrument.cache import describe
+
     file: Path = given.file.expanduser()
     held = describe(file)
     if held is None:
@@ -47,7 +47,9 @@ def show_cache(given: Namespace) -> int:
 
 
 def clear_cache(given: Namespace) -> int:
-    """Empty a cache, and say how much of the disk that freed."""
+    """Empty a cache, and print how much of the disk that freed."""
+    from octsim.instrument.cache import clear
+
     file: Path = given.file.expanduser()
     if not file.exists():
         print(f"{file}: no cache yet")

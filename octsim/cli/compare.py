@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from octsim.base.errors import DatasetError
-from octsim.datasets.catalog import stage_axes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,10 +28,7 @@ def add(commands: Any) -> None:
         parser.add_argument(
             name, type=Path, help="a run's folder as results/thesis, its archive, or a dataset"
         )
-    parser.add_argument(
-        "--tolerance", type=tolerance, default=1e-12, metavar="NUMBER",
-        help="largest relative difference of what is the same (default: %(default)s)",
-    )  # fmt: skip
+    add_tolerance(parser)
     drawn = parser.add_mutually_exclusive_group()
     drawn.add_argument(
         "--figure", type=_figure, metavar="FILE",
@@ -40,10 +36,18 @@ def add(commands: Any) -> None:
         "(default: compare_<A>_<B>.png here, of runs that have one)",
     )  # fmt: skip
     drawn.add_argument("--no-figure", action="store_true", help="draw none")
-    parser.set_defaults(do=compare, failed=2)
+    parser.set_defaults(do=run_compare, failed=2)
 
 
-def tolerance(text: str) -> float:
+def add_tolerance(parser: argparse.ArgumentParser) -> None:
+    """Add the option of what counts as the same."""
+    parser.add_argument(
+        "--tolerance", type=_tolerance, default=1e-12, metavar="NUMBER",
+        help="largest relative difference of what is the same (default: %(default)s)",
+    )  # fmt: skip
+
+
+def _tolerance(text: str) -> float:
     """Read a tolerance: 0 or more."""
     value = float(text)
     if not (value >= 0 and math.isfinite(value)):
@@ -58,9 +62,8 @@ def _figure(text: str) -> Path:
     return path
 
 
-def compare(given: argparse.Namespace) -> int:
-    """Print what differs between two runs; give the exit status."""
-    # xarray and matplotlib are not for those who ask for the cache
+def run_compare(given: argparse.Namespace) -> int:
+    """Print what differs between two runs; return the exit status."""
     from octsim.archive.compare import contrast
     from octsim.archive.compare_text import lines
     from octsim.archive.recorded import recorded
@@ -80,7 +83,9 @@ def compare(given: argparse.Namespace) -> int:
 
 
 def _usual(first: "Recorded", second: "Recorded") -> Path | None:
-    """Give the file of a figure that was not asked for, if the two runs have one in common."""
+    """Return the file of a figure that was not asked for, if the two runs have one in common."""
+    from octsim.datasets.catalog import stage_axes
+
     both = all(
         "phase_slope" in run.datasets and not stage_axes("phase_slope", run.config)
         for run in (first, second)
@@ -108,7 +113,7 @@ def _slopes(first: "Recorded", second: "Recorded") -> "tuple[xr.Dataset, xr.Data
 
 
 def _named(first: "Recorded", second: "Recorded") -> tuple[str, str]:
-    """Give names that tell two runs apart."""
+    """Return names that tell two runs apart."""
     if first.config.run != second.config.run:
         return first.config.run, second.config.run
     return f"{first.name} (A)", f"{second.name} (B)"
