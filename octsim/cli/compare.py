@@ -42,8 +42,9 @@ def add(commands: Any) -> None:
 def add_tolerance(parser: argparse.ArgumentParser) -> None:
     """Add the option of what counts as the same."""
     parser.add_argument(
-        "--tolerance", type=_tolerance, default=1e-12, metavar="NUMBER",
-        help="largest relative difference of what is the same (default: %(default)s)",
+        "--tolerance", type=_tolerance, metavar="NUMBER",
+        help="largest relative difference of what is the same (default: 1e-12, and of another "
+        "environment what the condition of each variable allows)",
     )  # fmt: skip
 
 

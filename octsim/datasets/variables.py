@@ -41,6 +41,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "path_code": ("1", "code of the light path"),
     "path_rays": ("1", "number of rays on the path"),
     "phase": ("rad", "phase of the component, in (-pi, pi]"),
+    "phase_status": ("1", "whether the component is more than rounding, and so has a phase"),
     "phase_slope": ("mrad/nm", "phase slope of the strongest component, or of the estimator"),
     "phase_slope_standard_deviation": ("mrad/nm", "scatter of the phase slope about its mean"),
     "predicted_phase_slope": ("mrad/nm", "predicted phase slope, n_neuron (k_min + k_max)"),

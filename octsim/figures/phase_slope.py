@@ -27,6 +27,15 @@ def _draw_components(
         )  # fmt: skip
 
 
+def _unwrapped(phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Unwrap phases (D, C) over the diameter, across those that are not known."""
+    found = np.full_like(phase, np.nan)
+    for values, column in zip(phase.T, found.T, strict=True):
+        known = np.isfinite(values)
+        column[known] = np.unwrap(values[known])
+    return found
+
+
 def figure_10(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
     """Draw the magnitude of the components over the diameter (thesis fig. 10)."""
     figure = Figure()
@@ -45,7 +54,7 @@ def figure_11(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
     figure = Figure()
     axes = figure.subplots()
     diameter = fourier["diameter"]
-    unwrapped = fourier["phase"].copy(data=np.unwrap(fourier["phase"].values, axis=0))
+    unwrapped = fourier["phase"].copy(data=_unwrapped(fourier["phase"].values))
     _draw_components(axes, diameter.values, slopes["component"].values, unwrapped)
     axes.set_xlabel(label(diameter))
     axes.set_ylabel(label(fourier["phase"], "phase, unwrapped"))

@@ -1,6 +1,7 @@
 """From spectra to phases and the phase slope (figures 9 to 12)."""
 
 from collections.abc import Iterator
+from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from octsim.config.models import Config
+from octsim.datasets.files import flags
 from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.reader import Stored
 from octsim.datasets.stage import Part, Stage, Stream
@@ -19,10 +21,21 @@ from octsim.phase.derivatives import wrapped
 from octsim.phase.transform import centred as centred
 from octsim.phase.transform import fourier_components as fourier_components
 from octsim.phase.transform import optical_depths as optical_depths
+from octsim.phase.transform import rounding_level
 from octsim.phase.transform import windowed as windowed
 from octsim.stages.cost_estimate import points_per_block
 
 _DEGREE = 4
+
+
+class PhaseStatus(IntEnum):
+    """Whether a component has a phase."""
+
+    KNOWN = 0
+    BELOW_ROUNDING = 1
+    """It holds nothing but rounding, as the constant one, whose mean is subtracted."""
+    NO_SPECTRUM = 2
+    """The spectrum is NaN, as there is no focus."""
 
 
 class PhaseSlopes(NamedTuple):
@@ -99,8 +112,8 @@ def fourier(config: Config, spectra: xr.Dataset) -> Stream:
     Returns
     -------
     Dataset
-        magnitude and phase (diameter, component), depth(component); and, of another estimator than
-        fft, estimated_phase and estimated_depth (diameter).
+        magnitude, phase and whether that is known (diameter, component), depth(component); and, of
+        another estimator than fft, estimated_phase and estimated_depth (diameter).
     """
 
     def own(config: Config) -> dict[str, Coordinate]:
@@ -132,9 +145,13 @@ def _transformed(layout: Layout, stored: Stored) -> Iterator[Part]:
         part = stored.part(at, span)
         intensity = part["intensity"].values
         components = fourier_components(intensity, at.config.processing)
+        magnitude = np.abs(components)
+        status = _status(magnitude, rounding_level(intensity, at.config.processing))
+        phase = np.where(status == PhaseStatus.KNOWN, np.angle(components), np.nan)
         variables: dict[str, Any] = {
-            "magnitude": (dimensions, np.abs(components)),
-            "phase": (dimensions, np.angle(components)),
+            "magnitude": (dimensions, magnitude),
+            "phase": (dimensions, phase),
+            "phase_status": (dimensions, *flags(PhaseStatus, status)),
         }
         if estimates:
             if span.start == 0:
@@ -144,6 +161,12 @@ def _transformed(layout: Layout, stored: Stored) -> Iterator[Part]:
             variables["estimated_phase"] = "diameter", found.phase
             variables["estimated_depth"] = "diameter", found.depth
         yield Part(at, span.start, len(intensity), variables)
+
+
+def _status(magnitude: NDArray[np.float64], level: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Tell which components (D, C) are above the rounding (D, 1) of their spectra."""
+    missing = np.where(np.isnan(magnitude), PhaseStatus.NO_SPECTRUM, PhaseStatus.BELOW_ROUNDING)
+    return np.where(magnitude > level, PhaseStatus.KNOWN, missing)
 
 
 @Stage
