@@ -53,7 +53,7 @@ def version_changes(first: Mapping[str, Path], second: Mapping[str, Path]) -> tu
         Files by stage.
     """
     stages = [stage for stage in first if stage in second]
-    found: dict[Change, list[str]] = {}
+    stages_of: dict[Change, list[str]] = {}
     for stage in stages:
         one, other = (_versions(stage, files[stage]) for files in (first, second))
         if not (one.keys() & _LIBRARIES and other.keys() & _LIBRARIES):
@@ -61,12 +61,12 @@ def version_changes(first: Mapping[str, Path], second: Mapping[str, Path]) -> tu
         for key in dict.fromkeys((*one, *other)):
             change = Change(key, one.get(key, NOT_RECORDED), other.get(key, NOT_RECORDED))
             if change.first != change.second:
-                found.setdefault(change, []).append(stage)
+                stages_of.setdefault(change, []).append(stage)
     return tuple(
         change
         if change.what.startswith(_SOURCES) or of == stages
         else change._replace(what=f"{change.what} ({', '.join(of)})")
-        for change, of in found.items()
+        for change, of in stages_of.items()
     )
 
 

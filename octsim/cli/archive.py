@@ -43,9 +43,10 @@ def run_archive(given: Namespace) -> int:
     named = given.file and given.file.expanduser()
     file = named or folder / f"{run.run}.zip"
     overlay = read_overlay(given.config.expanduser()) if given.config else packed_config(file)
-    said = load_config({key: part for key, part in overlay.items() if key == "archive"}).archive
-    data = merge(run.to_dict(), {"archive": said.model_dump(mode="json")})
-    packed = pack(folder, Config.model_validate(data), named)
+    # nothing else of it, as the datasets follow from the run's own
+    section = load_config({key: data for key, data in overlay.items() if key == "archive"}).archive
+    config = merge(run.to_dict(), {"archive": section.model_dump(mode="json")})
+    packed = pack(folder, Config.model_validate(config), named)
     for remark in packed.remarks:
         print(f"octsim: warning: {remark}", file=sys.stderr)
     print(packed)

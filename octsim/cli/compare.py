@@ -65,22 +65,22 @@ def _figure(text: str) -> Path:
 
 def run_compare(given: argparse.Namespace) -> int:
     """Print what differs between two runs; return the exit status."""
-    from octsim.archive.compare import contrast
+    from octsim.archive.compare import compare_recorded
     from octsim.archive.compare_text import lines
     from octsim.archive.recorded import recorded
-    from octsim.figures.compare import figure_contrast
+    from octsim.figures.compare import figure_compare
     from octsim.figures.style import look, save
 
     with recorded(given.A) as one, recorded(given.B) as other:
         figure = None if given.no_figure else given.figure or _usual(one, other)
         slopes = _slopes(one, other) if figure else None  # a figure that can't be is said at once
-        found = contrast(one, other, given.tolerance)
-        print(*lines(found), sep="\n")
+        result = compare_recorded(one, other, given.tolerance)
+        print(*lines(result), sep="\n")
         if figure and slopes:
             with look():
-                save(figure_contrast(slopes, _named(one, other)), figure)
+                save(figure_compare(slopes, _named(one, other)), figure)
             print(f"figure: {figure}")
-    return int(found.differs)
+    return int(result.differs)
 
 
 def _usual(first: "Recorded", second: "Recorded") -> Path | None:

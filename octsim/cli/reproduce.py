@@ -38,7 +38,7 @@ def _cores(text: str) -> int:
 
 def run_reproduce(given: argparse.Namespace) -> int:
     """Reproduce what the arguments name, and print what differs; return the exit status."""
-    from octsim.archive.compare import contrast
+    from octsim.archive.compare import compare_recorded
     from octsim.archive.compare_text import lines
     from octsim.archive.recorded import recorded
     from octsim.archive.reproduce import chosen, reproduce, require_workflow
@@ -46,10 +46,14 @@ def run_reproduce(given: argparse.Namespace) -> int:
     folder = given.folder.expanduser().absolute()
     try:
         require_workflow()
-        with warnings.catch_warnings(), recorded(given.file.expanduser()) as found:
-            warnings.simplefilter("ignore", OctsimWarning)  # the workflow says these
+        with (
+            # the workflow gives these
+            warnings.catch_warnings(action="ignore", category=OctsimWarning),
+            recorded(given.file.expanduser()) as found,
+        ):
             original = chosen(found, given.only)
-            result = contrast(original, reproduce(original, folder, given.cores), given.tolerance)
+            made = reproduce(original, folder, given.cores)
+            result = compare_recorded(original, made, given.tolerance)
     except KeyboardInterrupt:
         print("octsim: interrupted; the same command goes on from here", file=sys.stderr)
         return 130
