@@ -44,7 +44,7 @@ archive: .venv/run
 
 reproduce: .venv/run
 	@test -n "$(FILE)" -a -n "$(INTO)" || { echo "octsim: make reproduce needs FILE= and INTO=" >&2; exit 2; }
-	@$(BIN)/python -m octsim.cli.reproduce "$(FILE)" "$(INTO)" --cores $(CORES) $(TOLERANCE:%=--tolerance %)
+	@$(BIN)/octsim reproduce "$(FILE)" "$(INTO)" --cores $(CORES) $(TOLERANCE:%=--tolerance %)
 
 test: .venv/dev
 	$(BIN)/pytest -n 2 -m "not trial"

@@ -16,7 +16,7 @@ LIGHT = 1e-8
 squares end once a step changes the sum of squares by less than 1e-12 of it, which leaves the centre
 √1e-12 = 1e-6 of its standard error away; that error is some 1e-2 of the focus, in µm, over which
 the phase turns by about a radian."""
-ESTIMATE = 1e-4
+ESTIMATED_ERROR = 1e-4
 """Of estimated errors: differences of numbers that agree to the accuracy asked for, 1e-4 and less
 of them, so that LIGHT is this much of the difference."""
 WEAK = 1e-3
@@ -24,9 +24,9 @@ WEAK = 1e-3
 turns a component by as much as that is more than the component itself; side lobes of the windows,
 43 dB down and 6 dB less with each octave, are down to 1e-5 of it."""
 BY_NAME: Mapping[str, float] = {
-    "intensity_error": ESTIMATE,
-    "missing_field": ESTIMATE,
-    "residual": ESTIMATE,
+    "intensity_error": ESTIMATED_ERROR,
+    "missing_field": ESTIMATED_ERROR,
+    "residual": ESTIMATED_ERROR,
     "predicted_phase_slope": TOLERANCE,
     "phase": WEAK,
     "field_phase": WEAK,
@@ -43,7 +43,7 @@ class Condition(NamedTuple):
     """Step of the diameter that phases are differentiated over, µm; NaN if none is."""
 
     def tolerance(self, name: str, units: str, scale: float) -> float:
-        """Give the relative difference that a variable may have in another environment.
+        """Return the relative difference that a variable may have in another environment.
 
         Parameters
         ----------
@@ -55,7 +55,7 @@ class Condition(NamedTuple):
         if name in BY_NAME:
             return BY_NAME[name]
         if name.endswith("_standard_error"):
-            return ESTIMATE
+            return ESTIMATED_ERROR
         if units not in STEPPED or not self.step > 0 or not scale > 0:
             return LIGHT
         # a central difference has both phases' errors, over two steps; a one-sided one over one
@@ -77,6 +77,6 @@ def condition(dataset: xr.Dataset, stage: str, config: Config) -> Condition:
 
 
 def same_environment(first: xr.Dataset, second: xr.Dataset) -> bool:
-    """Tell whether two datasets say that the same libraries and kind of processor made them."""
+    """Return whether two datasets say that the same libraries and kind of processor made them."""
     one, other = (dataset.attrs.get("environment") for dataset in (first, second))
     return one is not None and one == other

@@ -5,12 +5,9 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from octsim.config.models import Cache
-from octsim.instrument.point_folder import folder_of, old_cache, old_cache_remark
-from octsim.instrument.point_store import clear, describe
-
-CACHE = Path(Cache().file)
-"""Where a checkout keeps its traced points."""
+CACHE = Path(".octsim/points")
+"""Where a checkout keeps its traced points: the default of the config's `cache.file`, of which it
+takes half a second to ask the config."""
 
 
 def add(commands: Any) -> None:
@@ -30,6 +27,9 @@ def add(commands: Any) -> None:
 
 def show_cache(given: Namespace) -> int:
     """Print what a cache holds, in a few lines."""
+    from octsim.instrument.point_folder import folder_of, old_cache, old_cache_remark
+    from octsim.instrument.point_store import describe
+
     file: Path = given.file.expanduser()
     held = describe(file)
     if held is None:
@@ -51,6 +51,9 @@ def show_cache(given: Namespace) -> int:
 
 def clear_cache(given: Namespace) -> int:
     """Empty a cache, and print how much of the disk that freed."""
+    from octsim.instrument.point_folder import folder_of, old_cache, old_cache_remark
+    from octsim.instrument.point_store import clear
+
     file: Path = given.file.expanduser()
     freed = clear(file)
     done = "no cache yet" if freed is None else f"{freed / 1e6:.1f} MB freed"

@@ -8,9 +8,12 @@ from pathlib import Path
 
 import pytest
 
+import octsim
+from octsim.cli.cache import CACHE
 from octsim.cli.main import main
 from octsim.instrument.point_store import PointStore, describe
 
+HEAVY = {"matplotlib", "netCDF4", "numba", "numpy", "pydantic", "scipy", "snakemake", "xarray"}
 ENTRIES = [(b"%d" % number, bytes(20_000)) for number in range(100)]
 
 
@@ -98,6 +101,33 @@ def test_an_old_cache_is_said_to_be_of_no_use_and_stays(
     assert said[0].startswith(".octsim/points.sqlite.store: ")
     assert said[-1].endswith("it can be deleted")
     assert old.read_bytes() == before
+
+
+def test_the_cache_without_a_name_is_that_of_a_config_without_one() -> None:
+    assert Path(octsim.Config().cache.file) == CACHE
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["--help"], ["cache", "show"], ["cache", "clear"], ["reproduce", "--help"],
+     ["verify", "none.zip"], ["unpack", "none.zip", "none"]],
+    ids=" ".join,
+)  # fmt: skip
+def test_what_computes_nothing_starts_without_what_computes(
+    arguments: list[str], folder: Path
+) -> None:
+    assert folder.is_dir()
+    code = (
+        "import sys; from octsim.cli.main import main\n"
+        "try: main(sys.argv[1:])\n"
+        "except SystemExit: pass\n"
+        "print(*sys.modules, sep='\\n', file=sys.stderr)"
+    )
+    line = [sys.executable, "-c", code, *arguments]
+    done = subprocess.run(line, capture_output=True, text=True, check=True)
+    loaded = set(done.stderr.splitlines())
+    assert "octsim.cli.main" in loaded
+    assert not loaded & (HEAVY | {"octsim.config.models"})
 
 
 @pytest.mark.parametrize(
