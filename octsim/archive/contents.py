@@ -16,7 +16,7 @@ from octsim.base.provenance import LOCK, lock_file
 from octsim.config.archive import ArchiveConfig
 from octsim.config.models import Config
 from octsim.datasets.catalog import STAGES, TARGETS
-from octsim.datasets.gallery import CAPTIONS, figures_of
+from octsim.datasets.gallery import CAPTIONS, drawn_with, figures_of
 from octsim.datasets.versions import printable
 
 CONFIG = "config.yaml"

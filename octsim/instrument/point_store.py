@@ -14,11 +14,10 @@ from contextlib import suppress
 from hashlib import blake2b
 from operator import add
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from octsim.base.errors import CacheError
 from octsim.base.files import reason
-from octsim.config.models import Cache
 from octsim.instrument.point_folder import (
     VERSION,
     described,
@@ -29,6 +28,9 @@ from octsim.instrument.point_folder import (
     old_cache_remark,
     write,
 )
+
+if TYPE_CHECKING:
+    from octsim.config.models import Cache
 
 _LOGGER = logging.getLogger(__name__)
 _BEGIN = b"octsim point 2\n\0"  # of each file; a checksum follows, then the body
@@ -184,7 +186,7 @@ class PointStore:
             _LOGGER.warning("octsim: warning: %s: %s", self.folder, text)
 
 
-def opened(cache: Cache) -> PointStore | None:
+def opened(cache: "Cache") -> PointStore | None:
     """Return the store that a config names; None of no gigabytes, which keep and read nothing.
 
     Raises
