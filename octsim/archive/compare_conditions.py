@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from octsim.config.models import Config
-from octsim.stages.law import GAUSSIAN_PARAMETERS
+from octsim.stages.gaussian_fits import GAUSSIAN_PARAMETERS
 
 TOLERANCE = 1e-12
 """Relative difference up to which numbers of one environment count as the same."""
@@ -65,7 +65,6 @@ class Condition(NamedTuple):
             return BY_NAME[name]
         if name.endswith("_standard_error"):
             return ESTIMATED_ERROR
-            return ESTIMATE
         if name in self.fitted and scale > 0:
             return max(LIGHT, self.fitted[name] / scale)
         if units not in STEPPED or not self.step > 0 or not scale > 0:
