@@ -116,12 +116,16 @@ class PointStore:
         return body
 
     def put(self, key: bytes, body: bytes) -> None:
-        """Keep a body, in the place of what had the same key; older points may make room."""
+        """Keep a body, in the place of what had the same key; older points may make room.
+
+        One that would take the room of all others is not kept.
+        """
         name, content = _name(key), _content(key, body)
+        size = _on_disk(len(content))
         try:
-            if self._can_keep():
+            if size <= _LEFT * self._allowed and self._can_keep():
                 write(self.folder / name, content)
-                self._make_room(name, _on_disk(len(content)))
+                self._make_room(name, size)
         except OSError as error:
             self._stop_keeping(error)
 
