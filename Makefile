@@ -2,7 +2,7 @@
 # make archive [CONFIG=mine.yaml]             the run as one file, for a data repository
 # make reproduce FILE=thesis.zip INTO=folder  an archive, a run or a dataset made anew there, and compared
 # make test                                   the test suite
-# make lint                                   formatting, style and types
+# make lint                                   formatting, style, types and what may import what
 # make docs                                   the parts of docs/ that are made
 # make bench                                  speed, as ratios within one run
 # make bench-sweeps                           what a grid of 1000 combinations takes, minutes
@@ -52,6 +52,7 @@ lint: .venv/dev
 	$(BIN)/ruff format --check
 	$(BIN)/snakefmt --check Snakefile
 	$(BIN)/mypy
+	$(BIN)/lint-imports --no-logo
 
 format: .venv/dev
 	$(BIN)/ruff check --fix
@@ -89,11 +90,12 @@ bench-slurm: .venv/dev .venv/slurm
 
 COMPILE = $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate
+RUN = --extra run --extra archive
 lock: .venv/bin/python
 	$(PIP) install uv
-	$(COMPILE) pyproject.toml --group build -o requirements.lock
-	$(COMPILE) pyproject.toml --group dev -c requirements.lock -o requirements-dev.lock
-	$(COMPILE) pyproject.toml --group build --extra slurm -c requirements.lock -o requirements-slurm.lock
+	$(COMPILE) pyproject.toml $(RUN) --group build -o requirements.lock
+	$(COMPILE) pyproject.toml $(RUN) --extra stability --group dev -c requirements.lock -o requirements-dev.lock
+	$(COMPILE) pyproject.toml $(RUN) --extra slurm --group build -c requirements.lock -o requirements-slurm.lock
 	$(COMPILE) benchmarks/peers.in -o benchmarks/peers.lock
 
 bench: .venv/run

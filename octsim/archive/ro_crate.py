@@ -8,7 +8,7 @@ from typing import Any
 
 from octsim.archive.checksums import SUMS
 from octsim.archive.contents import CONFIG, Item, Made
-from octsim.base.errors import ArchiveError
+from octsim.base.errors import ArchiveError, not_installed
 from octsim.config.archive import ArchiveConfig
 
 METADATA = "ro-crate-metadata.json"
@@ -84,9 +84,12 @@ def metadata(
     measured : mapping
         Size in bytes and SHA-256 of each file.
     """
-    from rocrate.model.contextentity import ContextEntity
-    from rocrate.model.softwareapplication import SoftwareApplication
-    from rocrate.rocrate import ROCrate
+    try:
+        from rocrate.model.contextentity import ContextEntity
+        from rocrate.model.softwareapplication import SoftwareApplication
+        from rocrate.rocrate import ROCrate
+    except ImportError:
+        raise not_installed("rocrate", "archive") from None
 
     crate = ROCrate(version=_VERSION)
     root = crate.root_dataset
