@@ -8,16 +8,18 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from octsim.archive.compare_conditions import TOLERANCE, Condition, condition, same_environment
 from octsim.archive.compare_origins import Change, config_changes, version_changes
 from octsim.archive.compare_points import Common, blocks, common_points
-from octsim.archive.compare_values import Deviation, Kind, deviation, kind_of
+from octsim.archive.compare_values import UNKNOWN, Deviation, Kind, deviation, kind_of
 from octsim.archive.recorded import Recorded, recorded
 from octsim.base.errors import DatasetError
 from octsim.base.files import reason
 from octsim.datasets.files import opened
 
-TOLERANCE = 1e-12
-"""Relative difference up to which numbers count as the same."""
+ADDED = frozenset({"phase_status"})
+"""Variables that files of 0.1.0 lack, and that say of others where they hold nothing. Rounding
+decides at the limit, so that they are judged within one environment alone."""
 SCALARS: Mapping[str, tuple[str, ...]] = {
     "focus_law": ("slope", "intercept"),
     "phase_slope": (
@@ -42,13 +44,15 @@ class VariableContrast(NamedTuple):
     deviation: Deviation
     unlike: str = ""
     """Why its values can't be compared, if they can't."""
+    allowed: float = 0.0
+    """Relative difference that its condition allows, where another environment made it."""
 
     def differs(self, tolerance: float) -> bool:
         """Tell whether it is another than in the other run; what is measured never is."""
         if self.kind is Kind.MEASURED:
             return False
         found = self.deviation
-        beyond = not found.relative <= tolerance
+        beyond = not found.relative <= max(tolerance, self.allowed)
         return bool(self.unlike or beyond or found.misplaced or found.unequal)
 
 
@@ -113,15 +117,17 @@ class Contrast(NamedTuple):
         return any(self.missing) or any(one.differs(self.tolerance) for one in self.datasets)
 
 
-def compare(first: str | Path, second: str | Path, tolerance: float = TOLERANCE) -> Contrast:
+def compare(first: str | Path, second: str | Path, tolerance: float | None = None) -> Contrast:
     """Compare two runs variable by variable, on the points that they share.
 
     Parameters
     ----------
     first, second : path
         A run's folder as ``results/thesis``, or the file of one of its datasets.
-    tolerance : float
-        Largest relative difference, max |a − b| / max |b| over a variable, of what is the same.
+    tolerance : float, optional
+        Largest relative difference, max |a − b| / max |b| over a variable, of what is the same. If
+        none is given, `TOLERANCE` where both were made in one environment, else what the condition
+        of each variable allows.
 
     Returns
     -------
@@ -137,7 +143,7 @@ def compare(first: str | Path, second: str | Path, tolerance: float = TOLERANCE)
         return contrast(one, other, tolerance)
 
 
-def contrast(first: Recorded, second: Recorded, tolerance: float = TOLERANCE) -> Contrast:
+def contrast(first: Recorded, second: Recorded, tolerance: float | None = None) -> Contrast:
     """Compare two runs that are at hand; see `compare`."""
     shared = [stage for stage in first.datasets if stage in second.datasets]
     if not shared:
@@ -146,12 +152,14 @@ def contrast(first: Recorded, second: Recorded, tolerance: float = TOLERANCE) ->
     found, scalars = [], []
     for stage in shared:
         with _both(stage, first, second) as (one, other):
-            found.append(_dataset(stage, one, other))
+            by_condition = tolerance is None and not same_environment(one, other)
+            conditioned = condition(other, stage, second.config) if by_condition else None
+            found.append(_dataset(stage, one, other, conditioned))
             scalars += _scalars(stage, one, other)
     return Contrast(
         names=(first.name, second.name),
         runs=(first.config.run, second.config.run),
-        tolerance=tolerance,
+        tolerance=TOLERANCE if tolerance is None else tolerance,
         config=config_changes(first.config, second.config),
         versions=version_changes(first.datasets, second.datasets),
         datasets=tuple(found),
@@ -176,15 +184,20 @@ def _both(stage: str, first: Recorded, second: Recorded) -> Iterator[tuple[xr.Da
             raise DatasetError(f"{which}: can't be read ({reason(error)})") from None
 
 
-def _dataset(stage: str, first: xr.Dataset, second: xr.Dataset) -> DatasetContrast:
+def _dataset(
+    stage: str, first: xr.Dataset, second: xr.Dataset, conditioned: Condition | None
+) -> DatasetContrast:
     names = [str(name) for name in first.variables]
     common, uneven = common_points(first, second)
+    compared = [_variable(n, first, second, common) for n in names if n in second.variables]
+    if conditioned is not None:
+        compared = [_allowed(one, second, conditioned) for one in compared]
     return DatasetContrast(
         stage,
-        tuple(_variable(n, first, second, common) for n in names if n in second.variables),
+        tuple(compared),
         (
-            tuple(str(name) for name in second.variables if name not in first.variables),
-            tuple(name for name in names if name not in second.variables),
+            tuple(str(n) for n in second.variables if n not in first.variables and n not in ADDED),
+            tuple(n for n in names if n not in second.variables and n not in ADDED),
         ),
         tuple(
             Unshared(dimension, points.first.size, points.sizes)
@@ -195,6 +208,16 @@ def _dataset(stage: str, first: xr.Dataset, second: xr.Dataset) -> DatasetContra
     )
 
 
+def _allowed(one: VariableContrast, dataset: xr.Dataset, by: Condition) -> VariableContrast:
+    """Judge a variable as its condition allows."""
+    if one.name in ADDED:
+        return one._replace(kind=Kind.MEASURED)
+    if one.kind not in (Kind.NUMBER, Kind.ANGLE) or one.unlike:
+        return one
+    units = str(dataset[one.name].attrs.get("units", "1"))
+    return one._replace(allowed=by.tolerance(one.name, units, one.deviation.scale))
+
+
 def _variable(
     name: str, first: xr.Dataset, second: xr.Dataset, common: Mapping[str, Common]
 ) -> VariableContrast:
@@ -203,7 +226,8 @@ def _variable(
     unlike = _unlike(one, other, common)
     if unlike or kind is Kind.MEASURED:
         return VariableContrast(name, kind, Deviation(), unlike)
-    return VariableContrast(name, kind, deviation(blocks(one, other, common), kind))
+    found = deviation(blocks(one, other, common), kind, name in UNKNOWN)
+    return VariableContrast(name, kind, found)
 
 
 def _unlike(one: xr.Variable, other: xr.Variable, common: Mapping[str, Common]) -> str:

@@ -18,6 +18,7 @@ def lines(found: Contrast) -> Iterator[str]:
     yield from (
         "",
         f"numbers, the largest relative difference; * differs (beyond {found.tolerance:g})",
+        *_conditions(found),
     )
     for side, stages in zip(_SIDES, found.missing, strict=True):
         yield from (f"* {stage}.nc: missing in {side}" for stage in stages)
@@ -26,6 +27,12 @@ def lines(found: Contrast) -> Iterator[str]:
     if found.scalars:
         yield from ("", *_table(found.scalars))
     yield from ("", _verdict(found))
+
+
+def _conditions(found: Contrast) -> list[str]:
+    if not any(one.allowed for dataset in found.datasets for one in dataset.variables):
+        return []
+    return ["made in another environment: * differs beyond the tolerance that a line tells"]
 
 
 def _changes(changes: tuple[Change, ...]) -> Iterable[str]:
@@ -56,7 +63,13 @@ def _variable(variable: VariableContrast) -> str:
         return f"{found.unequal} of {found.values} not equal" if found.unequal else "equal"
     said = f"{found.relative:.2e}" if found.relative else "0"
     elsewhere = f", NaN at {found.misplaced} of {found.values} places in one alone"
-    return said + (elsewhere if found.misplaced else "")
+    unknown = f", {found.unknown} of {found.values} left out: rounding alone in one"
+    return (
+        said
+        + (f" (tolerance {variable.allowed:.0e})" if variable.allowed else "")
+        + (elsewhere if found.misplaced else "")
+        + (unknown if found.unknown else "")
+    )
 
 
 def _table(scalars: tuple[Scalar, ...]) -> Iterator[str]:
@@ -78,7 +91,10 @@ def _table(scalars: tuple[Scalar, ...]) -> Iterator[str]:
 
 def _verdict(found: Contrast) -> str:
     if not found.differs:
-        return f"the same: every number within {found.tolerance:g}"
+        conditioned = bool(_conditions(found))
+        return "the same: every number within " + (
+            "its tolerance" if conditioned else f"{found.tolerance:g}"
+        )
     variables = [
         f"{dataset.stage}.{variable.name}"
         for dataset in found.datasets

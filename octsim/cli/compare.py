@@ -30,8 +30,9 @@ def add(commands: Any) -> None:
             name, type=Path, help="a run's folder as results/thesis, its archive, or a dataset"
         )
     parser.add_argument(
-        "--tolerance", type=tolerance, default=1e-12, metavar="NUMBER",
-        help="largest relative difference of what is the same (default: %(default)s)",
+        "--tolerance", type=tolerance, metavar="NUMBER",
+        help="largest relative difference of what is the same (default: 1e-12, and of another "
+        "environment what the condition of each variable allows)",
     )  # fmt: skip
     drawn = parser.add_mutually_exclusive_group()
     drawn.add_argument(

@@ -16,7 +16,7 @@ from typing import Any
 
 import xarray as xr
 
-from octsim.archive.compare import TOLERANCE, contrast
+from octsim.archive.compare import contrast
 from octsim.archive.compare_text import lines
 from octsim.archive.recorded import Recorded, recorded
 from octsim.archive.run_folder import run_in
@@ -45,7 +45,10 @@ def main() -> int:
     )
     parser.add_argument("file", type=Path, help="a run's folder, its archive, or a dataset")
     parser.add_argument("folder", type=Path, help="where to make it; empty, or not there yet")
-    parser.add_argument("--tolerance", type=tolerance, default=TOLERANCE, help="%(default)s")
+    parser.add_argument(
+        "--tolerance", type=tolerance,
+        help="1e-12, or of another environment what the condition of each variable allows",
+    )  # fmt: skip
     parser.add_argument("--cores", type=_cores, default=2, help="%(default)s")
     parser.add_argument("--only", nargs="+", metavar="STAGE", help="some of the datasets")
     given = parser.parse_args()

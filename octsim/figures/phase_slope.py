@@ -27,12 +27,22 @@ def _draw_components(
         )  # fmt: skip
 
 
+def _unwrapped(phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Unwrap phases (D, C) over the diameter, across those that are not known."""
+    found = np.full_like(phase, np.nan)
+    for values, column in zip(phase.T, found.T, strict=True):
+        known = np.isfinite(values)
+        column[known] = np.unwrap(values[known])
+    return found
+
+
 def figure_10(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
     """Draw the magnitude of the components over the diameter (thesis fig. 10)."""
     figure = Figure()
     axes = figure.subplots()
     diameter = fourier["diameter"]
-    _draw_components(axes, diameter.values, slopes["component"].values, fourier["magnitude"])
+    strongest = slopes["strongest_component"].values
+    _draw_components(axes, diameter.values, strongest, fourier["magnitude"])
     axes.set_xlabel(label(diameter))
     axes.set_ylabel(label(fourier["magnitude"], "magnitude (sum over the samples)"))
     axes.set_title(title(slopes, "Magnitude (solid where strongest)"))
@@ -45,8 +55,8 @@ def figure_11(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
     figure = Figure()
     axes = figure.subplots()
     diameter = fourier["diameter"]
-    unwrapped = fourier["phase"].copy(data=np.unwrap(fourier["phase"].values, axis=0))
-    _draw_components(axes, diameter.values, slopes["component"].values, unwrapped)
+    unwrapped = fourier["phase"].copy(data=_unwrapped(fourier["phase"].values))
+    _draw_components(axes, diameter.values, slopes["strongest_component"].values, unwrapped)
     axes.set_xlabel(label(diameter))
     axes.set_ylabel(label(fourier["phase"], "phase, unwrapped"))
     axes.set_title(title(slopes, "Phase (solid where strongest)"))
@@ -60,7 +70,7 @@ def figure_12(slopes: xr.Dataset) -> Figure:
     axes = figure.subplots()
     diameter = slopes["diameter"]
     _draw_components(
-        axes, diameter.values, slopes["component"].values, slopes["component_phase_slope"]
+        axes, diameter.values, slopes["strongest_component"].values, slopes["component_phase_slope"]
     )
     estimator = json.loads(slopes.attrs["config"])["processing"]["estimator"]
     if estimator != "fft":
