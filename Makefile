@@ -4,7 +4,7 @@
 # make test                                   the test suite, but for trials that take long
 # make test-all                               the whole of it
 # make test-processors                        tests of numbers, as other processors compute them
-# make lint                                   formatting, style and types
+# make lint                                   formatting, style, types and what may import what
 # make docs                                   the parts of docs/ that are made
 # make bench                                  speed, as ratios within one run
 # make bench-sweeps                           what a grid of 1000 combinations takes, minutes
@@ -60,6 +60,7 @@ lint: .venv/dev
 	$(BIN)/ruff format --check
 	$(BIN)/snakefmt --check Snakefile
 	$(BIN)/mypy
+	$(BIN)/lint-imports --no-logo
 
 format: .venv/dev
 	$(BIN)/ruff check --fix
@@ -97,11 +98,12 @@ bench-slurm: .venv/dev .venv/slurm
 
 COMPILE = $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate
+RUN = --extra run --extra archive
 lock: .venv/bin/python
 	$(PIP) install uv
-	$(COMPILE) pyproject.toml --group build -o requirements.lock
-	$(COMPILE) pyproject.toml --group dev -c requirements.lock -o requirements-dev.lock
-	$(COMPILE) pyproject.toml --group build --extra slurm -c requirements.lock -o requirements-slurm.lock
+	$(COMPILE) pyproject.toml $(RUN) --group build -o requirements.lock
+	$(COMPILE) pyproject.toml $(RUN) --extra stability --group dev -c requirements.lock -o requirements-dev.lock
+	$(COMPILE) pyproject.toml $(RUN) --extra slurm --group build -c requirements.lock -o requirements-slurm.lock
 	$(COMPILE) benchmarks/peers.in -o benchmarks/peers.lock
 
 bench: .venv/run

@@ -9,7 +9,7 @@ from typing import Any
 
 from octsim.archive.checksums import SUMS
 from octsim.archive.contents import CONFIG, ORCID, Item, description_of, origins_of, title_of
-from octsim.base.errors import ArchiveError
+from octsim.base.errors import ArchiveError, not_installed
 from octsim.config.archive import ArchiveConfig
 from octsim.config.models import Config
 
@@ -69,9 +69,12 @@ def metadata(
     ArchiveError
         If SOURCE_DATE_EPOCH is needed and is not a number of seconds.
     """
-    from rocrate.model.contextentity import ContextEntity
-    from rocrate.model.softwareapplication import SoftwareApplication
-    from rocrate.rocrate import ROCrate
+    try:
+        from rocrate.model.contextentity import ContextEntity
+        from rocrate.model.softwareapplication import SoftwareApplication
+        from rocrate.rocrate import ROCrate
+    except ImportError:
+        raise not_installed("rocrate", "archive") from None
 
     crate = ROCrate(version=_VERSION)
     root = crate.root_dataset
