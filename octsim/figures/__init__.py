@@ -7,11 +7,13 @@ from matplotlib.figure import Figure
 
 from octsim.config.processing import Processing
 from octsim.figures.beam import figure_1
-from octsim.figures.focus import figure_6, figure_7
+from octsim.figures.focus_law import figure_7
+from octsim.figures.focus_scan import figure_6
+from octsim.figures.fourier import figure_9, figure_10, figure_11
 from octsim.figures.grid import figure_grid
 from octsim.figures.paths import figure_paths
-from octsim.figures.phase_slope import figure_10, figure_11, figure_12
-from octsim.figures.spectrum import figure_8, figure_9
+from octsim.figures.phase_slope import figure_12
+from octsim.figures.spectra import figure_8
 
 Draw = Callable[[Mapping[str, xr.Dataset], Processing], Figure]
 

@@ -57,5 +57,5 @@ def figure_contrast(slopes: tuple[xr.Dataset, xr.Dataset], names: tuple[str, str
 
 
 def _shortened(name: str) -> str:
-    """Give the end of a name, which tells more of a path than its beginning."""
+    """Return the end of a name, which tells more of a path than its beginning."""
     return name if len(name) <= _MOST_LETTERS else "…" + name[1 - _MOST_LETTERS :]
