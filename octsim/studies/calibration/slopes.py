@@ -1,6 +1,7 @@
 """How the phase moves at one diameter: with it, with the focus, and with what may be off."""
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -164,13 +165,7 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
 
     slope = phase_slope(fixed, bench.processing)
     sensitivities = [change(bench.varied[name], pairs) for name, pairs in varied.items()]
-    accurate = [
-        fixed,
-        following,
-        focused,
-        *bent,
-        *(one for each in varied.values() for one in each),
-    ]
+    accurate = [fixed, following, focused, *bent, *chain.from_iterable(varied.values())]
     sides = side_slopes(own.light, diameter, focus, float((k[0] + k[-1]) / 2), step)
     return {
         **{f"{side}_side_phase_slope": of_side for side, of_side in sides.items()},
