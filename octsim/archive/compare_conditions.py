@@ -77,7 +77,7 @@ class Condition(NamedTuple):
 
 
 def condition(dataset: xr.Dataset, stage: str, config: Config) -> Condition:
-    """Find what a dataset's numbers hang on."""
+    """Return what a dataset's numbers hang on."""
     if stage == "gaussian_fits":
         return Condition(np.nan, _unsolved(dataset, config))
     if stage in ("calibration", "expansion"):

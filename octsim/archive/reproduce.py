@@ -16,7 +16,7 @@ import xarray as xr
 
 from octsim.archive.recorded import Recorded
 from octsim.archive.run_folder import run_in
-from octsim.base.errors import DatasetError, OctsimError
+from octsim.base.errors import DatasetError, OctsimError, not_installed
 from octsim.base.files import require_empty, require_folder, whole
 from octsim.base.provenance import PACKAGE
 from octsim.config.load import load_config
@@ -44,10 +44,7 @@ def require_workflow() -> None:
             "in one, `make reproduce FILE=... INTO=...` does it"
         )
     if find_spec("snakemake") is None:
-        raise OctsimError(
-            f"reproduce: needs snakemake, which {sys.executable} lacks; `{sys.executable} -m pip "
-            f"install -e {CHECKOUT}` installs it"
-        )
+        raise not_installed("snakemake", "run")
 
 
 def chosen(original: Recorded, only: Sequence[str] | None) -> Recorded:

@@ -284,7 +284,7 @@ def test_what_reproducing_needs_and_is_not_there_is_one_line_with_its_remedy(
 
     with monkeypatch.context() as without:
         without.setattr("octsim.archive.reproduce.find_spec", lambda _: None)
-        assert line().startswith("octsim: reproduce: needs snakemake")
+        assert line() == "octsim: snakemake is not installed; run: pip install 'octsim[run]'"
     monkeypatch.setattr("octsim.archive.reproduce.CHECKOUT", tmp_path)
     assert line().startswith("octsim: reproduce: needs a checkout of octsim")
     assert list(tmp_path.iterdir()) == []
