@@ -1,7 +1,9 @@
 # make results [CONFIG=mine.yaml] [CORES=2]   every dataset and figure of a run
 # make archive [CONFIG=mine.yaml]             the run as one file, for a data repository
 # make reproduce FILE=thesis.zip INTO=folder  an archive, a run or a dataset made anew there, and compared
-# make test                                   the test suite
+# make test                                   the test suite, but for trials that take long
+# make test-all                               the whole of it
+# make test-processors                        tests of numbers, as other processors compute them
 # make lint                                   formatting, style, types and what may import what
 # make docs                                   the parts of docs/ that are made
 # make bench                                  speed, as ratios within one run
@@ -30,7 +32,7 @@ except octsim.ConfigError as error:
 endef
 export CHECK
 
-.PHONY: results archive reproduce test lint format docs bench bench-sweeps bench-peers kills lock \
+.PHONY: results archive reproduce test test-all test-processors lint format docs bench bench-sweeps bench-peers kills lock \
 	slurm test-slurm bench-slurm clean
 results: .venv/run
 	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
@@ -42,10 +44,16 @@ archive: .venv/run
 
 reproduce: .venv/run
 	@test -n "$(FILE)" -a -n "$(INTO)" || { echo "octsim: make reproduce needs FILE= and INTO=" >&2; exit 2; }
-	@$(BIN)/python -m octsim.cli.reproduce "$(FILE)" "$(INTO)" --cores $(CORES) $(TOLERANCE:%=--tolerance %)
+	@$(BIN)/octsim reproduce "$(FILE)" "$(INTO)" --cores $(CORES) $(TOLERANCE:%=--tolerance %)
 
 test: .venv/dev
+	$(BIN)/pytest -n 2 -m "not trial"
+
+test-all: .venv/dev
 	$(BIN)/pytest -n 2
+
+test-processors: .venv/dev
+	.ci/processors
 
 lint: .venv/dev
 	$(BIN)/ruff check
@@ -114,7 +122,7 @@ bench-peers: .venv-peers/run
 	touch $@
 
 kills: .venv/dev
-	OCTSIM_KILLS=30 $(BIN)/pytest -n 2 tests/workflow/test_kill.py tests/instrument/test_cache.py -k killed
+	OCTSIM_KILLS=30 $(BIN)/pytest -n 2 tests/workflow/test_kill.py tests/instrument/test_point_store.py -k killed
 
 clean:
 	rm -rf .venv .venv-peers results .snakemake

@@ -50,7 +50,7 @@ class Deviation(NamedTuple):
 
 
 def kind_of(name: str, dtype: np.dtype[Any], is_coordinate: bool) -> Kind:
-    """Tell how a variable is judged."""
+    """Return how a variable is judged."""
     if name in MEASURED:
         return Kind.MEASURED
     if is_coordinate or dtype.kind != "f":

@@ -27,7 +27,7 @@ class FileError(OctsimError):
 
 
 class CacheError(OctsimError):
-    """A file is no point cache, or not one that this octsim reads, or can't be cleared."""
+    """A folder is no point cache, or not one that this octsim reads, or can't be cleared."""
 
 
 class ArchiveError(OctsimError):

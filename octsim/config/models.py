@@ -216,7 +216,7 @@ class Cache(Section):
     """Where traced points are kept; no result depends on it."""
 
     file: Annotated[str, Field(min_length=1)] = _key(
-        ".octsim/points.sqlite", "of this folder, or one that several share"
+        ".octsim/points", "folder for them, beside the run's results or one that several share"
     )
     gigabytes: Annotated[Number, Field(ge=0, le=1e6)] = _key(
         4.0, "its largest size; 0 keeps and reads nothing"

@@ -9,7 +9,7 @@ from octsim.config.scheme import scheme_of
 from octsim.datasets.catalog import CATALOG, LIGHT, SUMMING, Figure
 from octsim.schemes.table import COUNTED_RAYS, SCHEMES
 
-NO_RESULT = ("octsim.config.archive", "octsim.instrument.points")
+NO_RESULT = ("octsim.config.archive", "octsim.instrument.points", "octsim.instrument.point_store")
 """Modules that no number follows from, though what makes datasets imports them."""
 
 

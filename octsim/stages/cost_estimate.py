@@ -13,8 +13,7 @@ from octsim.config.grid import axes, combinations
 from octsim.config.models import Config
 from octsim.config.scheme import options_of, scheme_of
 from octsim.datasets.keys import keys_behind
-from octsim.instrument.cache import opened
-from octsim.instrument.cacheplace import cache_file
+from octsim.instrument.point_store import opened
 from octsim.schemes.cost import PointCost
 from octsim.stages.workload import point_cost
 
@@ -147,24 +146,21 @@ def expected(config: Config) -> Estimate:
     Raises
     ------
     CacheError
-        If the file of the cache is none that can be used.
+        If what the cache's name stands for is none that can be used.
     """
     try:
-        file = cache_file(config.cache.file)
+        store = opened(config.cache)
     except ConfigError:  # what is set for a cluster's jobs need not be where they are sent from
-        return estimate(config, lambda _, typical: typical)
-    if not file.exists():
-        return estimate(config, lambda _, typical: typical)
-    with opened(file, config.cache.gigabytes) as cache:
+        store = None
 
-        def measured(name: str, typical: PointCost) -> PointCost:
-            rate = cache.rates(name)
-            if rate is None or rate.points < _ENOUGH:
-                return typical
-            size, seconds = rate.bytes / rate.points, rate.cpu_seconds / rate.points
-            return typical._replace(size=size, seconds=seconds)
+    def measured(name: str, typical: PointCost) -> PointCost:
+        rate = store.rates(name) if store else None
+        if rate is None or rate.points < _ENOUGH:
+            return typical
+        size, seconds = rate.bytes / rate.points, rate.cpu_seconds / rate.points
+        return typical._replace(size=size, seconds=seconds)
 
-        return estimate(config, functools.cache(measured))
+    return estimate(config, functools.cache(measured))
 
 
 def check_budget(config: Config, cost: Cost, folder: Path) -> None:

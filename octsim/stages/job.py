@@ -70,16 +70,14 @@ def _points(job: Job, config: Config) -> Iterator["Points | None"]:
     if job.shares or not any(row.traces or row.beside for row in job.rows):
         yield None  # nor is numba imported
         return
-    from octsim.instrument.cache import opened as opened_cache
-    from octsim.instrument.cacheplace import cache_file
+    from octsim.instrument.point_store import opened as opened_store
     from octsim.instrument.points import Points
 
-    with opened_cache(cache_file(config.cache.file), config.cache.gigabytes) as cache:
-        points = Points(cache)
-        try:
-            yield points
-        finally:
-            points.keep()
+    points = Points(opened_store(config.cache))
+    try:
+        yield points
+    finally:
+        points.keep()
 
 
 def _make(

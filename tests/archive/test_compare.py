@@ -14,7 +14,7 @@ import xarray as xr
 from matplotlib.colors import to_rgb
 
 import octsim
-from octsim.archive.compare import Contrast, DatasetContrast, VariableContrast
+from octsim.archive.compare import Comparison, DatasetComparison, VariableComparison
 from octsim.archive.compare_conditions import TOLERANCE
 from octsim.archive.compare_origins import Change
 from octsim.archive.compare_points import blocks, common_points
@@ -24,7 +24,7 @@ from octsim.cli.main import main
 from octsim.datasets.files import make as dataset_of_stage
 from octsim.datasets.files import write
 from octsim.datasets.variables import MEANINGS
-from octsim.figures.compare import figure_contrast
+from octsim.figures.compare import figure_compare
 from octsim.figures.style import look
 
 TINY: dict[str, Any] = {
@@ -84,7 +84,7 @@ def at(place: tuple[int, ...], value: Any) -> Callable[[Any], Any]:
     return change
 
 
-def differing(found: Contrast) -> dict[str, VariableContrast]:
+def differing(found: Comparison) -> dict[str, VariableComparison]:
     return {
         f"{dataset.stage}.{variable.name}": variable
         for dataset in found.datasets
@@ -93,7 +93,7 @@ def differing(found: Contrast) -> dict[str, VariableContrast]:
     }
 
 
-def dataset_of(found: Contrast, stage: str) -> DatasetContrast:
+def dataset_of(found: Comparison, stage: str) -> DatasetComparison:
     return next(one for one in found.datasets if one.stage == stage)
 
 
@@ -341,7 +341,7 @@ def test_blocks_hold_every_shared_value_once() -> None:
 
 
 def measured(cost: float, segments: float) -> xr.Dataset:
-    """Give a trade-off of two settings that cost so much."""
+    """Return a trade-off of two settings that cost so much."""
     columns: dict[str, Any] = {
         "cpu_seconds": np.array([cost, 2 * cost]),
         "peak_memory": np.array([cost, 1.0]),
@@ -447,7 +447,7 @@ def test_the_figure_is_drawn_where_it_is_asked_for(
 def test_the_figure_has_both_runs_told_apart_in_grey_with_units(tiny: Path) -> None:
     slopes = octsim.read(tiny / "phase_slope.nc")
     with look():
-        figure = figure_contrast((slopes, slopes), ("one", "x" * 100))
+        figure = figure_compare((slopes, slopes), ("one", "x" * 100))
     (axes,) = figure.axes
     one, ideal, prediction, other, _, _ = axes.get_lines()
     np.testing.assert_array_equal(np.asarray(one.get_ydata()), slopes["phase_slope"].values)
@@ -480,7 +480,7 @@ def elsewhere(dataset: xr.Dataset) -> xr.Dataset:
 def test_another_environment_is_judged_by_the_condition_unless_a_tolerance_is_given(
     stage: str, name: str, within: float, beyond: float, tiny: Path, edited: Any
 ) -> None:
-    def contrasts(by: float, where: Edit) -> list[Contrast]:
+    def comparisons(by: float, where: Edit) -> list[Comparison]:
         """Compare with a value that is off, without and with a tolerance."""
         change = replaced(name, lambda values: values * (1 + by))
         other = edited(stage, lambda dataset: where(change(dataset)))
@@ -489,11 +489,11 @@ def test_another_environment_is_judged_by_the_condition_unless_a_tolerance_is_gi
         return found
 
     key = f"{stage}.{name}"
-    near, strict = contrasts(within, elsewhere)
+    near, strict = comparisons(within, elsewhere)
     assert key not in differing(near)
     assert (key in differing(strict)) == (within > TOLERANCE)
-    assert key in differing(contrasts(beyond, elsewhere)[0])
-    same, _ = contrasts(within, lambda dataset: dataset)
+    assert key in differing(comparisons(beyond, elsewhere)[0])
+    same, _ = comparisons(within, lambda dataset: dataset)
     assert (key in differing(same)) == (within > TOLERANCE)
 
 
