@@ -245,7 +245,9 @@ def make_tree(carry: Carry) -> Callable[..., tuple[Any, ...]]:
                     outcomes[Outcome.FAINT] += 2 * count - total - through - returned
                     here = code * faces.kind.size + 2 * faces.surface[f]
                     top = _wait(waiting, top, returned, faces.after_reflection[f], m + 1, here)
-                    top = _wait(waiting, top, through, faces.after_transmission[f], m + 1, here + 1)
+                    top = _wait(
+                        waiting, top, through, faces.after_transmission[f], m + 1, here + 1
+                    )
                 outcomes[Outcome.ESCAPED] += escaped
         return (
             arrived.labels[:count_arrived].T.copy(),
