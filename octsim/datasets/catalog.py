@@ -88,7 +88,7 @@ _RUN = (
         "Scan the focus for one diameter",
         reads=(LIGHT, *_COUNTED, "spectrum", "focus_scan"), traces=True,
         figures=(
-            Figure("figure_6", "octsim.figures.focus:figure_6",
+            Figure("figure_6", "octsim.figures.focus_scan:figure_6",
                    "detected rays and intensity over the focus"),
         ),
     ),
@@ -107,7 +107,7 @@ _RUN = (
         "Fit the focus law through their centres",
         after=("gaussian_fits",), job="focus_law",
         figures=(
-            Figure("figure_7", "octsim.figures.focus:figure_7",
+            Figure("figure_7", "octsim.figures.focus_law:figure_7",
                    "foci of greatest intensity, and the line through them",
                    of=("gaussian_fits", "focus_law")),
         ),
@@ -123,7 +123,7 @@ _RUN = (
         reads=("spectrum", SUMMING), after=("detections",), job="spectra",
         doubts="octsim.stages.spectra:doubts",
         figures=(
-            Figure("figure_8", "octsim.figures.spectrum:figure_8",
+            Figure("figure_8", "octsim.figures.spectra:figure_8",
                    "a spectrum on its way to its Fourier transform"),
         ),
     ),
@@ -141,12 +141,12 @@ _RUN = (
         "Transform the spectra",
         reads=("processing",), after=("spectra",), job="phase_slope",
         figures=(
-            Figure("figure_9", "octsim.figures.spectrum:figure_9",
+            Figure("figure_9", "octsim.figures.fourier:figure_9",
                    "Fourier transform of a spectrum"),
-            Figure("figure_10", "octsim.figures.phase_slope:figure_10",
+            Figure("figure_10", "octsim.figures.fourier:figure_10",
                    "magnitude of the components over the diameter",
                    of=("fourier", "phase_slope")),
-            Figure("figure_11", "octsim.figures.phase_slope:figure_11",
+            Figure("figure_11", "octsim.figures.fourier:figure_11",
                    "phase of the components over the diameter",
                    of=("fourier", "phase_slope")),
         ),

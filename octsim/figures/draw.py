@@ -6,9 +6,11 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import xarray as xr
+from matplotlib.figure import Figure
 
 from octsim.base.named import called, named
 from octsim.config.models import Config
+from octsim.config.processing import Processing
 from octsim.datasets.files import read
 from octsim.datasets.gallery import Drawn
 from octsim.figures.style import look, save
@@ -60,11 +62,16 @@ def draw(
         list(pool.map(_draw, tasks))
 
 
+def figure_of(one: Drawn, datasets: Mapping[str, xr.Dataset], processing: Processing) -> Figure:
+    """Return a figure of the datasets that it is drawn from, by their names."""
+    sources = (datasets[name] for name in one.sources)
+    figure: Figure = called(named(one.figure.draw), *sources, processing=processing)
+    return figure
+
+
 def _draw(task: tuple[Drawn, Path, Config]) -> None:
-    (figure, sources), folder, config = task
+    one, folder, config = task
     with look():
-        drawn = called(
-            named(figure.draw), *(_read[name] for name in sources), processing=config.processing
-        )
+        figure = figure_of(one, _read, config.processing)
         for form in FORMS:
-            save(drawn, folder / f"{figure.name}.{form}")
+            save(figure, folder / f"{one.figure.name}.{form}")

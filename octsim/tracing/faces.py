@@ -35,8 +35,6 @@ class Faces(NamedTuple):
     """Height of a plane, or of a cylinder's axis, (F,), µm."""
     radius: NDArray[np.float64]
     """Radius of a cylinder, (F,), µm; 1 for a plane."""
-    region: NDArray[np.int64]
-    """Number of the region on the side of incidence, (F,); 0 is that of the objective."""
     n_i: NDArray[np.float64]
     """Refractive index on the side of incidence, (F,)."""
     n_t: NDArray[np.float64]
@@ -74,7 +72,6 @@ def faces_of(scene: Scene) -> Faces:
         x=np.array([s.x if isinstance(s, Cylinder) else 0.0 for s in surfaces]),
         z=np.array([s.z if isinstance(s, Cylinder) else s.height for s in surfaces]),
         radius=np.array([s.radius if isinstance(s, Cylinder) else 1.0 for s in surfaces]),
-        region=np.array([int(m) for _, m in sides]),
         n_i=np.array([index[m] for _, m in sides]),
         n_t=np.array([index[m] for _, m in others]),
         after_reflection=np.array([departures.index(side) for side in sides]),

@@ -13,6 +13,7 @@ from octsim.base.errors import OctsimError
 from octsim.config.derive import by_accuracy
 from octsim.config.load import load_config
 from octsim.config.models import FocusLine, Processing
+from octsim.instrument.instrument import Instrument
 from octsim.optics.two_beams import predicted_phase_slope
 from octsim.phase.derivatives import phase_derivative
 from octsim.phase.slopes import phase_slopes
@@ -27,9 +28,9 @@ from octsim.studies.causes.switches import (
     every_slope,
     neighbours,
     shapley,
-    share,
     signal,
     slopes,
+    variance_share,
 )
 
 Array = NDArray[np.float64]
@@ -142,7 +143,7 @@ def test_parts_sum_to_the_whole_and_equal_ones_are_equal() -> None:
         part = shapley(values)
         whole, none = values[frozenset("abc")], values[frozenset()]
         assert np.allclose(sum(part.values()), whole - none, atol=1e-12)
-        shares = [share(p, whole) for p in (*part.values(), none)]
+        shares = [variance_share(p, whole) for p in (*part.values(), none)]
         assert sum(shares) == pytest.approx(1, abs=1e-12)
     part = shapley({s: np.sum([terms[c] for c in s], axis=0) * np.ones(20) for s in subsets})
     assert all(np.allclose(part[c], terms[c]) for c in "abc")
@@ -190,7 +191,7 @@ def test_fields_and_parts_sum_to_the_spectrum_of_the_run(scheme: str) -> None:
     )
     spectra = octsim.spectra(config, octsim.detections(config))
     diameters, foci = spectra["diameter"].values, spectra["focus"].values
-    found = fields_at(config, diameters, foci)
+    found = fields_at(Instrument(config), diameters, foci)
     intensity, whole = spectra["intensity"].values, np.sum(found, axis=0)
     rounding = {"vogel": 1e-11, "paths": 1e-6}[scheme] * intensity.max()
     assert np.allclose(np.abs(whole) ** 2, intensity, rtol=0, atol=rounding)
@@ -215,8 +216,8 @@ def test_along_the_axis_the_beat_has_the_plates_slope() -> None:
     line = narrow.sweep.focus
     assert isinstance(line, FocusLine)
     held = line.at(read.diameter)
-    follows = beat_slopes(narrow, read, line.at)
-    stays = beat_slopes(narrow, read, lambda _: held)
+    follows = beat_slopes(Instrument(narrow), read, line.at)
+    stays = beat_slopes(Instrument(narrow), read, lambda _: held)
     middle = float(K[K.size // 2])
     glass = narrow.scene.refractive_index.glass
     assert follows.beat == pytest.approx(PREDICTED, rel=1e-4)
@@ -228,17 +229,17 @@ def test_along_the_axis_the_beat_has_the_plates_slope() -> None:
 
 
 def test_a_focus_that_follows_adds_what_the_focus_does() -> None:
-    config = by_accuracy(CONFIG, 1e-8)
+    instrument = Instrument(by_accuracy(CONFIG, 1e-8))
     read = READING._replace(diameter=np.array([1.2, 1.7]))
     line = CONFIG.sweep.focus
     assert isinstance(line, FocusLine)
     held = line.at(read.diameter)
-    follows = beat_slopes(config, read, line.at)
-    stays = beat_slopes(config, read, lambda _: held)
+    follows = beat_slopes(instrument, read, line.at)
+    stays = beat_slopes(instrument, read, lambda _: held)
     weight = np.hamming(K.size) * np.exp(-2j * N * np.outer(read.diameter, K))
 
     def by_focus(offset: float) -> NDArray[np.complex128]:
-        moved = parts(fields_at(config, read.diameter, held + offset)).beat
+        moved = parts(fields_at(instrument, read.diameter, held + offset)).beat
         return np.asarray((moved * weight).sum(axis=1))
 
     change = phase_derivative(by_focus, 1e-3).value
@@ -251,5 +252,5 @@ def test_a_focus_that_follows_adds_what_the_focus_does() -> None:
 def test_a_scene_in_which_nothing_beats_is_refused() -> None:
     few = load_config(CONFIG.to_dict(), {"tracing": {"max_intersections": 3}})
     with pytest.raises(OctsimError, match="far side") as said:
-        fields_at(few, np.array([1.2]), np.array([0.7]))
+        fields_at(Instrument(few), np.array([1.2]), np.array([0.7]))
     assert "\n" not in str(said.value)

@@ -164,7 +164,7 @@ def test_octsims_formulas_ray_by_ray_give_its_own_bits() -> None:
     config = load_config({"tracing": {"rays": 100}, "detector": {"core_diameter": "40 um"}})
     case = prepared(Cell("", "", "", ()), config)
     faces, place = faces_of(scene_of(config, 1.4)), np.argsort(case.beam.number)
-    found = case.found
+    found = case.detections
     for ray, code, path in zip(found.ray, found.path, found.optical_path_length, strict=True):
         arguments = (case.beam, 0.876, int(place[ray]), int(code))
         double = follow_single(faces, detector_of(config), *arguments, np.float64)
@@ -176,7 +176,7 @@ def test_octsims_formulas_ray_by_ray_give_its_own_bits() -> None:
 
 def test_rays_on_the_axis_and_next_to_it_give_finite_results() -> None:
     cell = Cell("", "", "", (), positions=axial)
-    found = prepared(cell, BASE).found
+    found = prepared(cell, BASE).detections
     assert np.isfinite(found.amplitude).all()
     assert np.isfinite(found.optical_path_length).all()
     assert found.amplitude.size > 0
