@@ -68,6 +68,8 @@ def metadata(
     ------
     ArchiveError
         If SOURCE_DATE_EPOCH is needed and is not a number of seconds.
+    OctsimError
+        If rocrate is not installed.
     """
     try:
         from rocrate.model.contextentity import ContextEntity

@@ -18,7 +18,7 @@ from octsim.datasets.keys import stage_axes
 from octsim.datasets.reader import Stored
 from octsim.datasets.writer import write_stream
 from octsim.schemes.light import AccuracyStatus
-from octsim.stages import cost_estimate as estimates
+from octsim.stages import workload
 from octsim.stages.phase_slope import summary
 from octsim.stages.spectra import doubts
 
@@ -257,7 +257,7 @@ def test_blocks_threads_and_order_change_no_bit(monkeypatch: pytest.MonkeyPatch)
     configs = [gridded(grid, {"tracing": {"scheme": "paths", "accuracy": 1e-2}}) for grid in grids]
     whole = run(configs[0])
     for most, config, threads in ((1, configs[0], 1), (2, configs[1], 2), (3, configs[0], 3)):
-        monkeypatch.setattr(estimates, "_MOST_POINTS", most)
+        monkeypatch.setattr(workload, "_MOST_POINTS", most)
         again = run(config, threads)
         for stage in STAGES:
             for at in combinations(config):
