@@ -35,10 +35,10 @@ def _read(stage: str, config: Config) -> Iterator[str]:
 
 
 def _behind(stage: str, config: Config) -> Iterator[str]:
-    yield from _read(stage, config)
     for before in CATALOG[stage].after if stage in CATALOG else ():
         if before != "focus_law" or config.sweep.focus == "law":
             yield from _behind(before, config)
+    yield from _read(stage, config)
 
 
 def stage_axes(stage: str, config: Config) -> tuple[Axis, ...]:

@@ -98,8 +98,13 @@ def upgraded(dataset: xr.Dataset, path: Path) -> xr.Dataset:
     missing = [n for n in _GREW.get(dataset.attrs["stage"], ()) if n not in dataset.variables]
     if missing:
         raise _refused(path, by, f"it lacks {', '.join(missing)}")
-    renamed = _RENAMED.get(dataset.attrs["stage"], {})
-    dataset = dataset.rename_vars({old: new for old, new in renamed.items() if old in dataset})
+    renamed = {
+        old: new
+        for old, new in _RENAMED.get(dataset.attrs["stage"], {}).items()
+        if old in dataset.variables
+    }
+    # of the name of a dimension, it was read as a coordinate
+    dataset = dataset.rename_vars(renamed).reset_coords(list(renamed.values()))
     return dataset.assign_attrs(config=json.dumps(config), schema_version=SCHEMA)
 
 
