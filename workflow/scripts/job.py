@@ -49,8 +49,7 @@ def make(folder: Path, config: Config) -> None:
     from octsim.stages.job import Job, perform
     from octsim.stages.scatter import Share
 
-    rule = snakemake.wildcards.get("stage", snakemake.rule)
-    rows = tuple(row for row in CATALOG.values() if row.rule == rule)
+    rows = tuple(row for row in CATALOG.values() if row.rule == NAME)
     before = {name: Path(file) for name, file in snakemake.input.items() if name in CATALOG}
     made = {row.name: Path(snakemake.output.get(row.name, snakemake.output[0])) for row in rows}
     job = Job(
@@ -99,6 +98,8 @@ def archive(folder: Path, config: Config) -> None:
     logging.info("%s", packed)
 
 
+# not the rule's name, which is another where this workflow is a module of one of the user's
+NAME = snakemake.wildcards.get("stage", Path(snakemake.log[0]).stem)
 run = next(above for above in Path(snakemake.log[0]).parents if above.name == "logs").parent
 end_with_the_run(run)
 logging.basicConfig(filename=snakemake.log[0], level=logging.INFO, format="%(message)s")
@@ -106,7 +107,7 @@ logging.captureWarnings(capture=True)
 logging.raiseExceptions = False  # a full disk is said once, by what hits it
 warnings.simplefilter("ignore", OctsimWarning)  # the workflow has said these once
 try:
-    {"figures": draw, "archive": archive}.get(snakemake.rule, make)(
+    {"figures": draw, "archive": archive}.get(NAME, make)(
         run, load_config(snakemake.config)
     )
 except OctsimError as error:
