@@ -11,8 +11,7 @@ import yaml
 
 from octsim.archive.origin import Origin, origin_of
 from octsim.archive.run_folder import FIGURES, Run
-from octsim.base.environment import environment
-from octsim.base.provenance import LOCK, lock_file
+from octsim.base.provenance import LOCK, environment, lock_file
 from octsim.config.archive import ArchiveConfig
 from octsim.config.models import Config
 from octsim.datasets.catalog import STAGES, TARGETS

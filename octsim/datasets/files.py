@@ -13,9 +13,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.base.environment import environment
 from octsim.base.errors import DatasetError
 from octsim.base.files import reason, whole
+from octsim.base.provenance import environment
 from octsim.config.models import Config
 from octsim.datasets.code import code_of
 from octsim.datasets.keys import differing

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import octsim
-from octsim.base.environment import environment
+from octsim.base.provenance import environment
 from octsim.datasets.files import write
 from octsim.datasets.versions import SCHEMA
 

@@ -107,9 +107,7 @@ logging.captureWarnings(capture=True)
 logging.raiseExceptions = False  # a full disk is said once, by what hits it
 warnings.simplefilter("ignore", OctsimWarning)  # the workflow has said these once
 try:
-    {"figures": draw, "archive": archive}.get(NAME, make)(
-        run, load_config(snakemake.config)
-    )
+    {"figures": draw, "archive": archive}.get(NAME, make)(run, load_config(snakemake.config))
 except OctsimError as error:
     logging.error("%s", error)
     sys.exit(f"octsim: {error}")
