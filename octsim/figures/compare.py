@@ -15,7 +15,7 @@ _PREDICTIONS = (0, (5, 2, 1, 8)), (8, (5, 2, 1, 8))
 _MOST_LETTERS = 36  # of a name in the legend
 
 
-def figure_contrast(slopes: tuple[xr.Dataset, xr.Dataset], names: tuple[str, str]) -> Figure:
+def figure_compare(slopes: tuple[xr.Dataset, xr.Dataset], names: tuple[str, str]) -> Figure:
     """Draw two runs' phase slopes with their ideal curves and predictions.
 
     Parameters

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from octsim.figures.phase_slope import draw_components
 from octsim.figures.spectra import DIAMETER
@@ -42,12 +43,23 @@ def figure_9(fourier: xr.Dataset) -> Figure:
     return figure
 
 
+def _unwrapped(phase: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Unwrap phases (D, C) over the diameter, across those that are not known."""
+    found = np.full_like(phase, np.nan)
+    for values, column in zip(phase.T, found.T, strict=True):
+        known = np.isfinite(values)
+        column[known] = np.unwrap(values[known])
+    return found
+
+
 def figure_10(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
     """Draw the magnitude of the components over the diameter (thesis fig. 10)."""
     figure = Figure()
     axes = figure.subplots()
     diameter = fourier["diameter"]
-    draw_components(axes, diameter.values, slopes["component"].values, fourier["magnitude"])
+    draw_components(
+        axes, diameter.values, slopes["strongest_component"].values, fourier["magnitude"]
+    )
     axes.set_xlabel(label(diameter))
     axes.set_ylabel(label(fourier["magnitude"], "magnitude (sum over the samples)"))
     axes.set_title(title(slopes, "Magnitude (solid where strongest)"))
@@ -60,8 +72,8 @@ def figure_11(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
     figure = Figure()
     axes = figure.subplots()
     diameter = fourier["diameter"]
-    unwrapped = fourier["phase"].copy(data=np.unwrap(fourier["phase"].values, axis=0))
-    draw_components(axes, diameter.values, slopes["component"].values, unwrapped)
+    unwrapped = fourier["phase"].copy(data=_unwrapped(fourier["phase"].values))
+    draw_components(axes, diameter.values, slopes["strongest_component"].values, unwrapped)
     axes.set_xlabel(label(diameter))
     axes.set_ylabel(label(fourier["phase"], "phase, unwrapped"))
     axes.set_title(title(slopes, "Phase (solid where strongest)"))

@@ -33,7 +33,7 @@ def figure_12(slopes: xr.Dataset) -> Figure:
     axes = figure.subplots()
     diameter = slopes["diameter"]
     draw_components(
-        axes, diameter.values, slopes["component"].values, slopes["component_phase_slope"]
+        axes, diameter.values, slopes["strongest_component"].values, slopes["component_phase_slope"]
     )
     estimator = json.loads(slopes.attrs["config"])["processing"]["estimator"]
     if estimator != "fft":

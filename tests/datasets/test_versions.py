@@ -54,6 +54,10 @@ def test_a_stage_goes_on_from_a_file_of_0_1_0() -> None:
         config, octsim.fourier(config, octsim.read(OLD / "0.1.0/spectra.nc"))
     )
     then = octsim.read(OLD / "0.1.0/phase_slope.nc")
+    # 0.1.0 gave components of rounding alone a phase
+    known = slopes["component_phase_slope"].notnull()
+    assert known[:, 1:].all()
+    then["component_phase_slope"] = then["component_phase_slope"].where(known)
     xr.testing.assert_allclose(slopes, then, rtol=1e-9)
 
 

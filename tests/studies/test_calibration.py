@@ -122,6 +122,7 @@ def asked(**overlay: object) -> Config:
     )
 
 
+@pytest.mark.trial
 def test_plates_have_the_slopes_and_sensitivities_of_their_formula(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -107,7 +107,6 @@ def action_potential(
             **_trips(config, round_trips(config, calibration, law, threads, points)),
         },
         {"time": time, "trip_diameter": trip_diameters(config)},
-        __name__,
     )
 
 

@@ -181,7 +181,6 @@ def series_expansion(config: Config, series: Series, calibration: xr.Dataset) ->
             **measured,
         },
         {"time": series.time},
-        __name__,
     )
 
 

@@ -90,7 +90,6 @@ def calibration(
         "Change of the phase with the diameter, at a fixed focus and gap",
         _variables(config, diameters, rows) | {"focus": ("diameter", foci), "slope": line.slope},
         {"diameter": diameters, "parameter": list(PARAMETERS)},
-        __name__,
     )
 
 

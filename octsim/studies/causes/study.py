@@ -122,7 +122,6 @@ def causes(
             "spike_neighbour": near,
             "wavenumber": k,
         },
-        __name__,
     )
 
 

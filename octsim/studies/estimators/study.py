@@ -125,7 +125,6 @@ def estimators(
             "noise_diameter": at_places(diameter),
             "scene": [one.name for one in scenes],
         },
-        __name__,
     )
 
 

@@ -16,12 +16,12 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
 
+from octsim.base.errors import not_installed
+
 try:
     from mpmath import MPContext
 except ImportError:
-    raise SystemExit(
-        "octsim: the stability target needs mpmath; install what development needs: make .venv/dev"
-    ) from None
+    raise not_installed("mpmath", "stability") from None
 
 from octsim.config.models import Config
 

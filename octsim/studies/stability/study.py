@@ -85,7 +85,6 @@ def stability(
             "factor": ("cell", [cell.factor for cell in matrix]),
             "value": ("cell", [cell.value for cell in matrix]),
         },
-        __name__,
     )
 
 

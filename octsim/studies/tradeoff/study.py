@@ -272,7 +272,6 @@ def _dataset(config: Config, listed: list[Setting], variables: dict[str, Any]) -
             "scheme": ("setting", [setting.config.tracing.scheme for setting in listed]),
             "target": [f"error of {COUNTED} rays", *(f"{target:g}" for target in TARGETS)],
         },
-        __name__,
     )
 
 
