@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from octsim.config.derive import by_accuracy, by_rays, changed
 from octsim.config.models import Config
-from octsim.instrument.instrument import scheme_of
+from octsim.config.scheme import scheme_of
 from octsim.schemes.table import PRESETS
 
 RAYS = (100, 300, 1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000)

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from octsim.config.derive import by_accuracy, by_rays, changed, reference
 from octsim.config.models import Config, FocusLine
+from octsim.config.scheme import scheme_of
 from octsim.datasets.files import make
-from octsim.instrument.instrument import Instrument, scheme_of
+from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 from octsim.phase.slopes import phase_slopes
 from octsim.phase.transform import fourier_components
