@@ -16,20 +16,20 @@ SIDES: Mapping[str, str] = {"near": "PT CR PT", "far": "PT CT CR CT PT"}
 
 
 def rays_on(light: Light, chosen: Callable[[str], bool]) -> NDArray[np.bool_]:
-    """Tell which rays (R,) are on light paths that are chosen by name."""
+    """Return which rays (R,) are on light paths that are chosen by name."""
     codes, path = np.unique(light.path, return_inverse=True)
     kept = np.array([chosen(path_name(code)) for code in codes.tolist()], bool)
     return kept[path]
 
 
 def field_of(light: Light, rays: NDArray[np.bool_], wavenumber: float) -> complex:
-    """Sum some of the rays, (R,), at one wavenumber (1/µm); 0 if there are none."""
+    """Return the field of some of the rays, (R,), at one wavenumber, 1/µm; 0 without any."""
     turns = np.exp(1j * wavenumber * light.optical_path_length[rays])
     return complex((light.amplitude[rays] * turns).sum())
 
 
 def path_field(light: Light, name: str, wavenumber: float) -> complex:
-    """Sum the rays of one light path at one wavenumber (1/µm); 0 if there are none."""
+    """Return the field of one light path at one wavenumber, 1/µm; 0 without any of its rays."""
     return field_of(light, rays_on(light, name.__eq__), wavenumber)
 
 
@@ -40,7 +40,7 @@ def side_slopes(
     wavenumber: float,
     step: float,
 ) -> dict[str, float]:
-    """Differentiate the phase of each side's light over the diameter, the focus held.
+    """Return how the phase of each side's light moves with the diameter, the focus held.
 
     Parameters
     ----------

@@ -30,24 +30,6 @@ class Spectra(NamedTuple):
     """Of the one that is farthest from as asked."""
 
 
-class Look(NamedTuple):
-    """Spectra to be made: of one instrument, at S diameters with a focus each."""
-
-    instrument: Instrument
-    diameters: Array
-    """(S,), µm."""
-    foci: Array
-    """(S,), µm."""
-
-    def spectra(self) -> Spectra:
-        """Return the spectra."""
-        places = zip(self.diameters.tolist(), self.foci.tolist(), strict=True)
-        intensity, error, status = zip(
-            *(self.instrument.spectrum(*place) for place in places), strict=True
-        )
-        return Spectra(np.stack(intensity), max(error), max(status))
-
-
 class Placed(NamedTuple):
     """An instrument, and how far its neuron and focus are from where they were."""
 
@@ -128,6 +110,13 @@ def bench_of(
     )
 
 
+def look(instrument: Instrument, diameters: Array, foci: Array) -> Spectra:
+    """Return the spectra of diameters, (S,), with a focus each, (S,), both µm."""
+    places = zip(diameters.tolist(), foci.tolist(), strict=True)
+    intensity, error, status = zip(*(instrument.spectrum(*at) for at in places), strict=True)
+    return Spectra(np.stack(intensity), max(error), max(status))
+
+
 def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
     """Return what a calibration holds at a diameter and its focus, both µm.
 
@@ -139,18 +128,19 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
     """
     own, step, k = bench.instrument, bench.step, bench.instrument.wavenumber
     depth = float(own.nominal_depth(np.array(diameter)))
-    offsets = stencil(diameter, step)
-    held, follows = np.full(offsets.size, focus), focus + bench.law_slope * offsets
-    fixed = Look(own, diameter + offsets, held).spectra()
-    following = Look(own, diameter + offsets, follows).spectra()
-    focused = Look(own, np.full(offsets.size, diameter), focus + offsets).spectra()
+    offsets, sides = stencil(diameter, step), np.array([-step, step])
+    at_rest, held = np.full(offsets.size, diameter), np.full(offsets.size, focus)
 
-    def pairs(varied: Varied) -> list[Spectra]:
-        return [_pair(at, diameter, focus, step).spectra() for at in varied.placed]
+    def pair(placed: Placed) -> Spectra:
+        diameters: Array = diameter + placed.diameter + sides
+        return look(placed.instrument, diameters, np.full(sides.size, focus + placed.focus))
 
-    bent = pairs(bench.bent)
-    varied = {name: pairs(one) for name, one in bench.varied.items()}
-    by_rays = _pair(Placed(bench.by_rays), diameter, focus, step).spectra()
+    fixed = look(own, diameter + offsets, held)
+    following = look(own, diameter + offsets, focus + bench.law_slope * offsets)
+    focused = look(own, at_rest, focus + offsets)
+    bent = [pair(placed) for placed in bench.bent.placed]
+    varied = {name: [pair(placed) for placed in one.placed] for name, one in bench.varied.items()}
+    accurate = [fixed, following, focused, *bent, *chain.from_iterable(varied.values())]
 
     def phase_slope(seen: Spectra, processing: Processing) -> Derivative:
         phase = series_phases(seen.intensity, k, depth, processing)
@@ -165,27 +155,19 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
 
     slope = phase_slope(fixed, bench.processing)
     sensitivities = [change(bench.varied[name], pairs) for name, pairs in varied.items()]
-    accurate = [fixed, following, focused, *bent, *chain.from_iterable(varied.values())]
-    sides = side_slopes(own.light, diameter, focus, float((k[0] + k[-1]) / 2), step)
+    by_side = side_slopes(own.light, diameter, focus, float((k[0] + k[-1]) / 2), step)
     return {
-        **{f"{side}_side_phase_slope": of_side for side, of_side in sides.items()},
+        **{f"{side}_side_phase_slope": of_side for side, of_side in by_side.items()},
         "fixed_focus_phase_slope": slope.value,
         "difference_error": slope.error,
         "following_phase_slope": phase_slope(following, bench.processing).value,
         "focus_phase_slope": phase_slope(focused, bench.processing).value,
         "fft_fixed_focus_phase_slope": phase_slope(fixed, bench.fft).value,
         "fft_following_phase_slope": phase_slope(following, bench.fft).value,
-        "rays_phase_slope": pair_slope(by_rays),
+        "rays_phase_slope": pair_slope(pair(Placed(bench.by_rays))),
         "phase_curvature": change(bench.bent, bent).value / 1e3,  # per nm
         "sensitivity": np.array([one.value for one in sensitivities]),
         "sensitivity_error": np.array([one.error for one in sensitivities]),
         "intensity_error": max(seen.error for seen in accurate),
         "accuracy_status": max(seen.status for seen in accurate),
     }
-
-
-def _pair(placed: Placed, diameter: float, focus: float, step: float) -> Look:
-    """Return a step to each side of a diameter, whose phases give one instrument's slope."""
-    sides = np.array([-step, step])
-    diameters: Array = diameter + placed.diameter + sides
-    return Look(placed.instrument, diameters, np.full(sides.size, focus + placed.focus))

@@ -98,13 +98,13 @@ def fields_at(
         return _summed(instrument.light(*place), instrument.wavenumber)
 
     places = zip(diameters.tolist(), foci.tolist(), strict=True)
-    found = Fields(*np.stack(list(each(at, places, threads)), axis=1))
+    fields = Fields(*np.stack(list(each(at, places, threads)), axis=1))
     for side in ("near", "far"):
-        dark = ~getattr(found, side).any(axis=1)
+        dark = ~getattr(fields, side).any(axis=1)
         if dark.any():
             raise OctsimError(
                 f"sweep: at a diameter of {diameters[dark][0]:.6g} um no light comes back from the "
                 f"cylinder's {side} side, so that no beat has a phase; change sweep.diameters, "
                 "sweep.focus, tracing.max_intersections or scene.refractive_index"
             )
-    return found
+    return fields

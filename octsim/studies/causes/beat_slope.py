@@ -59,6 +59,6 @@ def beat_slopes(
         beat = (parts(fields).beat * reference).sum(axis=1)
         return np.stack([beat, fields.near[:, k.size // 2], fields.far[:, k.size // 2]])
 
-    found = phase_derivative(phasors, min(STEP, float(reading.diameter.min()) / 4))
-    beat, near, far = found.value
-    return BeatSlopes(beat, near, far, found.error[0])
+    derivative = phase_derivative(phasors, min(STEP, float(reading.diameter.min()) / 4))
+    beat, near, far = derivative.value
+    return BeatSlopes(beat, near, far, derivative.error[0])

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from octsim.config.derive import by_accuracy, by_rays, changed
 from octsim.config.models import Config
+from octsim.config.scheme import scheme_of
 from octsim.schemes.table import PRESETS
 
 RAYS = (100, 300, 1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000)
@@ -68,10 +69,14 @@ def preset_of(setting: Setting) -> str:
 
 def _relevant(config: Config) -> dict[str, Any]:
     """Return what of a config the results follow from: without what its scheme does not read."""
-    tracing = config.to_dict()["tracing"]
-    unread = {"vogel": ("preset", "accuracy"), "paths": ("preset", "rays", "min_amplitude")}
-    read = {key: tracing[key] for key in tracing if key not in unread[tracing["scheme"]]}
-    return read | {"samples": config.spectrum.samples, "num": config.sweep.diameters.num}
+    scheme, tracing = scheme_of(config), config.tracing
+    return {
+        **scheme.chosen(tracing),
+        "scheme": scheme.name,
+        "max_intersections": tracing.max_intersections,
+        "samples": config.spectrum.samples,
+        "num": config.sweep.diameters.num,
+    }
 
 
 def _tracing(config: Config) -> Iterator[Setting]:

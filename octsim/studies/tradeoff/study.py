@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from octsim.config.derive import by_accuracy, by_rays, changed, reference
 from octsim.config.models import Config, FocusLine
+from octsim.config.scheme import scheme_of
 from octsim.datasets.files import make
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
@@ -29,6 +30,7 @@ from octsim.studies.tradeoff.settings import (
 )
 
 Array = NDArray[np.float64]
+_NO_LAW = FocusLine.model_construct(slope=np.nan, intercept=np.nan)
 
 
 class Errors(NamedTuple):
@@ -147,32 +149,37 @@ def tradeoff(
     focus = config.sweep.focus
     line = focus if isinstance(focus, FocusLine) else FocusLine.fitted(law)
     exact = ReferenceSweep(config, line, threads, points)
-    costs: list[MeasuredCost] = []
-    errors: list[Errors] = []
-    laws: list[FocusLine] = []
-    for setting in listed:
-        diameters = setting.config.sweep.diameters.values()[:: setting.every]
-        timed = setting.config, diameters, line.at(diameters)
-        costs.append(apart(prepare, sweep_cost, *timed) if separate else sweep_cost(*timed))
-        errors.append(_errors(setting, costs[-1].intensity, exact))
-        laws.append(
-            FocusLine.fitted(fitted_law(setting.config, threads, points))
-            if setting.law
-            else FocusLine.model_construct(slope=np.nan, intercept=np.nan)
-        )
+    # before what is not timed, whose memory would be there to use again
+    costs = [_measured(setting, line, prepare, separate) for setting in listed]
+    errors = [
+        _errors(setting, cost.intensity, exact) for setting, cost in zip(listed, costs, strict=True)
+    ]
+    laws = [
+        FocusLine.fitted(fitted_law(setting.config, threads, points)) if setting.law else _NO_LAW
+        for setting in listed
+    ]
     variables = {
-        **_measured(listed, costs, errors),
+        **_columns(listed, costs, errors),
         **_law_errors(laws, FocusLine.fitted(law), config),
         **_changes(listed, costs),
     }
     return _dataset(config, listed, variables)
 
 
+def _measured(
+    setting: Setting, line: FocusLine, prepare: Callable[[], None] | None, separate: bool
+) -> MeasuredCost:
+    """Return what a setting costs, on this process or on one of its own."""
+    diameters = setting.config.sweep.diameters.values()[:: setting.every]
+    swept = setting.config, diameters, line.at(diameters)
+    return apart(prepare, sweep_cost, *swept) if separate else sweep_cost(*swept)
+
+
 def _errors(setting: Setting, intensity: Array, exact: ReferenceSweep) -> Errors:
     config = setting.config
     spectra = exact.spectra(config.sweep.diameters.num, config.spectrum.samples)
     off = intensity_errors(intensity, spectra[:: setting.every])
-    asked = config.tracing.accuracy if config.tracing.scheme == "paths" else np.inf
+    asked = config.tracing.accuracy if scheme_of(config).controls_error else np.inf
     errors = Errors(float(off.max()), float(np.median(off)), int((off > asked).sum()))
     if setting.every > 1:
         return errors
@@ -183,7 +190,7 @@ def _errors(setting: Setting, intensity: Array, exact: ReferenceSweep) -> Errors
     )
 
 
-def _measured(
+def _columns(
     listed: list[Setting], costs: list[MeasuredCost], errors: list[Errors]
 ) -> dict[str, Any]:
     # of as many diameters as the sweep has, where only some were traced
