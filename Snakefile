@@ -18,6 +18,7 @@ from filelock import FileLock, Timeout
 from octsim.base.errors import OctsimError
 from octsim.base.files import require_folder
 from octsim.base.provenance import lock_file, source_digest
+from octsim.cli.job_server import SOCKET, start
 from octsim.config.derive import parts_of
 from octsim.config.grid import remarks
 from octsim.config.load import load_config
@@ -51,6 +52,10 @@ if workflow.is_main_process:
 elif not is_latest(Path(f"results/{run.run}")):
     # queued on a cluster by a run that was killed: it must not touch what the next one makes
     sys.exit("octsim: this job's run has ended, and another of its name has begun")
+else:
+    # of the machine that sent this job to a cluster
+    os.environ.pop(SOCKET, None)
+SERVER = []  # that jobs on this machine are forks of; it ends with this process
 # not workflow.cores, which in a job on a cluster are all that its node has
 CORES = int(os.environ.get("OCTSIM_CORES", workflow.cores))
 FOLDER = f"results/{run.run}"
@@ -134,6 +139,8 @@ onstart:
     except Timeout:
         sys.exit(f"octsim: another run is at work on {FOLDER}; wait for it or stop it")
     begin(Path(FOLDER))
+    if workflow.is_main_process and workflow.local_exec:
+        SERVER.append(start())
 
 
 onsuccess:
@@ -201,9 +208,6 @@ for name, rows in (jobs(beside=False) | jobs(beside=True)).items():
             ),
         log:
             f"{FOLDER}/logs/{name}.log",
-            **({"points": f"{FOLDER}/logs/{name}.json"} if rows[0].traces else {}),
-        benchmark:
-            f"{FOLDER}/benchmarks/{name}.tsv"
         threads: threads_of(rows)
         resources:
             **needs(*(row.name for row in rows)),
@@ -225,8 +229,6 @@ rule figures:
         update([f"{FOLDER}/figures/{name}.{form}" for name in FIGURES for form in ("png", "svg")]),
     log:
         f"{FOLDER}/logs/figures.log",
-    benchmark:
-        f"{FOLDER}/benchmarks/figures.tsv"
     threads: CORES
     resources:
         **needs("spectra", "phase_slope"),
@@ -247,8 +249,6 @@ rule archive:
         update(f"{FOLDER}/{run.run}.zip"),
     log:
         f"{FOLDER}/logs/archive.log",
-    benchmark:
-        f"{FOLDER}/benchmarks/archive.tsv"
     params:
         # it holds the whole config but for what no result depends on, and maybe a day
         made_from=made_from(source_digest("octsim.archive.pack"), "archive", *run.to_record()),

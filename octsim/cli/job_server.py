@@ -1,0 +1,131 @@
+"""Jobs as forks of one process that has the libraries: importing them takes longer than most jobs.
+
+    python -m octsim.cli.job_server DESCRIPTOR
+
+Each connection to the socket brings a task, and the standard streams of who asks; a fork does it
+and sends back its exit status. The server ends with the process that has started it. Where there is
+none, as on the nodes of a cluster, a job is done where it is asked for.
+"""
+
+import contextlib
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import traceback
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+SOCKET = "OCTSIM_JOB_SERVER"
+"""Environment variable with the path of the socket."""
+_LOOK = 1.0  # s, between looks at whether the parent is still there
+_STREAMS = (1, 2)
+_HEAD = 16  # bytes, with the length of the task that follows
+_LOADED = (
+    "matplotlib.backends.backend_agg", "scipy.optimize", "scipy.signal", "octsim.archive.pack",
+    "octsim.figures.draw", "octsim.instrument.point_store", "octsim.stages.job",
+)  # fmt: skip
+
+
+def start() -> tempfile.TemporaryDirectory[str]:
+    """Start a server, and return the folder of its socket, which the caller has to keep."""
+    folder = tempfile.TemporaryDirectory(prefix="octsim-", ignore_cleanup_errors=True)
+    path = f"{folder.name}/jobs"
+    with socket.socket(socket.AF_UNIX) as listener:
+        listener.bind(path)
+        listener.listen(64)  # from now on who asks is heard
+        subprocess.Popen(
+            [sys.executable, "-m", "octsim.cli.job_server", str(listener.fileno())],
+            pass_fds=[listener.fileno()], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+    os.environ[SOCKET] = path
+    return folder
+
+
+def ask(task: Mapping[str, Any]) -> int | None:
+    """Have a task done by the server; return its exit status, or None if there is no server."""
+    with socket.socket(socket.AF_UNIX) as connection:
+        try:
+            connection.connect(os.environ.get(SOCKET, ""))
+        except OSError:
+            return None
+        text = json.dumps({**task, "folder_of_the_process": str(Path.cwd())}).encode()
+        socket.send_fds(connection, [f"{len(text):{_HEAD}}".encode()], _STREAMS)
+        connection.sendall(text)
+        status = connection.recv(1)
+    if not status:
+        print("octsim: the job was killed; is there memory enough for it?", file=sys.stderr)
+    return status[0] if status else 1
+
+
+def serve(listener: socket.socket) -> None:
+    """Fork a process for each task, until the parent is gone."""
+    parent = os.getppid()
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the forks
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent has it, and says what is to be done
+    listener.settimeout(_LOOK)
+    _load()
+    while os.getppid() == parent:
+        with contextlib.suppress(TimeoutError):
+            connection, _ = listener.accept()
+            if os.fork() == 0:
+                listener.close()
+                _do(connection)
+            connection.close()
+
+
+def _load() -> None:
+    """Import what jobs need; what can't be imported is said by the job that needs it."""
+    from octsim.base.named import named
+    from octsim.datasets.catalog import CATALOG
+
+    of_stages = (row.make.partition(":")[0] for row in CATALOG.values() if not row.beside)
+    for module in (*_LOADED, *of_stages):
+        with contextlib.suppress(ImportError):
+            __import__(module)
+    named("octsim.base.provenance:environment")()
+
+
+def _do(connection: socket.socket) -> None:
+    """Do a task in a fork, and end it."""
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    status = 1
+    try:
+        head, streams, _, _ = socket.recv_fds(connection, _HEAD, len(_STREAMS))
+        for given, own in zip(streams, _STREAMS, strict=True):
+            os.dup2(given, own)
+            os.close(given)
+        with connection.makefile("rb") as stream:
+            task = json.loads(stream.read(int(head)))
+        os.chdir(task.pop("folder_of_the_process"))
+        threading.Thread(target=_end_with, args=(connection,), daemon=True).start()
+        from octsim.cli.job import Task, do
+
+        status = do(Task(**task))
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        with contextlib.suppress(OSError):
+            connection.sendall(bytes([status]))
+        os._exit(status)
+
+
+def _end_with(connection: socket.socket) -> None:
+    """End this process when who asked is gone."""
+    with contextlib.suppress(OSError):
+        connection.recv(1)
+    os._exit(1)
+
+
+if __name__ == "__main__":
+    with socket.socket(fileno=int(sys.argv[1])) as given:
+        serve(given)
