@@ -12,10 +12,11 @@ from octsim.config.models import Config
 from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
+from octsim.instrument.build import surface_names
 from octsim.schemes.light import Light
 from octsim.stages.cost_estimate import point_cost, points_per_block
 from octsim.stages.detections import stored_light
-from octsim.tracing.follow import path_name
+from octsim.tracing.light_paths import path_name
 
 _SAMPLES = 101  # of the band, for means over it
 
@@ -109,8 +110,9 @@ def light_paths(config: Config, detected: xr.Dataset) -> Stream:
     unnamed = Layout("paths", config, title, __name__, swept, "diameter")
     stored = Stored(detected, "detections", config, unnamed)
     codes = _strongest_first(unnamed, stored)
+    names = surface_names(config)
     named: dict[str, Coordinate] = {
-        "path": ("path", np.array([path_name(code) for code in codes.tolist()], str)),
+        "path": ("path", np.array([path_name(code, names) for code in codes.tolist()], str)),
         "path_code": ("path", codes),
     }
     layout = Layout(

@@ -5,9 +5,10 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.optics.scene import NEURON_ON_GLASS
 from octsim.phase.derivatives import wrapped
 from octsim.schemes.light import Light
-from octsim.tracing.follow import path_name
+from octsim.tracing.light_paths import path_name
 
 GLASS = "PR"
 """The light path off the glass, which meets no neuron."""
@@ -18,7 +19,7 @@ SIDES: Mapping[str, str] = {"near": "PT CR PT", "far": "PT CT CR CT PT"}
 def rays_on(light: Light, chosen: Callable[[str], bool]) -> NDArray[np.bool_]:
     """Tell which rays (R,) are on light paths that are chosen by name."""
     codes, path = np.unique(light.path, return_inverse=True)
-    kept = np.array([chosen(path_name(code)) for code in codes.tolist()], bool)
+    kept = np.array([chosen(path_name(code, NEURON_ON_GLASS)) for code in codes.tolist()], bool)
     return kept[path]
 
 

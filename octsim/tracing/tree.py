@@ -1,9 +1,11 @@
-"""The ray tree: every ray splits at every surface it meets, until it is detected or gone.
+"""The ray tree: every ray splits at every surface it meets, until it arrives or is gone.
 
 Rays that are neighbours in the aperture go through the tree together, as a block of lanes, along
 one light path after the other, depth first.
 """
 
+import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,11 +14,22 @@ from numpy.typing import NDArray
 
 from octsim.base.compiled import compiled
 from octsim.optics.beam import Beam
-from octsim.optics.detector import Detector, Outcome, arrival, collect, fate
+from octsim.optics.detector import (
+    Acceptance,
+    Detector,
+    Outcome,
+    acceptance,
+    at_plane,
+    fate,
+    to_fibre,
+    weight,
+)
 from octsim.optics.scene import Scene
-from octsim.tracing.blocks import (
-    AMPLITUDE,
-    BLOCK,
+from octsim.tracing.blocks import advance_chosen, choose, launch, meet_nearest, sift, split
+from octsim.tracing.carry import AMPLITUDE, Carry
+from octsim.tracing.faces import Faces, faces_at
+from octsim.tracing.lanes import (
+    CARRIED,
     LANES,
     PATH,
     RAY,
@@ -26,29 +39,21 @@ from octsim.tracing.blocks import (
     Lanes,
     X,
     Y,
-    advance_chosen,
-    choose,
     direction,
-    launch,
-    meet_nearest,
     position,
-    sift,
-    split,
 )
-from octsim.tracing.faces import Faces, faces_of
 
 OUTCOMES = len(Outcome)
+_OWN = 5  # numbers of an arrival before what it carries
 
 
-class Detections(NamedTuple):
-    """Rays that reached the detector, D of them, always in the same order."""
+class Arrivals(NamedTuple):
+    """Rays that a detector accepts, D of them, always in the same order; not weighed."""
 
     ray: NDArray[np.int64]
-    """Number of the launched ray that each comes from, (D,)."""
+    """Place in the beam of the launched ray that each comes from, (D,)."""
     path: NDArray[np.int64]
-    """Code of the light path, (D,); `path_name` reads it."""
-    amplitude: NDArray[np.float64]
-    """Amplitude, weighted by the detector, (D,)."""
+    """Code of the light path, (D,); `octsim.tracing.light_paths` reads it."""
     optical_path_length: NDArray[np.float64]
     """Path from the focus to the fibre, beyond that of an axial ray through the lens, (D,), µm."""
     x: NDArray[np.float64]
@@ -59,23 +64,38 @@ class Detections(NamedTuple):
     """Unit direction there, x component, (D,); it heads down."""
     vy: NDArray[np.float64]
     """The same, y component, (D,)."""
+    carried: NDArray[np.float64]
+    """What it carries there, (C, D)."""
     segments: int
     """Straight pieces of ray that were traced."""
     outcomes: NDArray[np.int64]
     """How often each `Outcome` came about, (7,)."""
 
 
-class _Found(NamedTuple):
-    """Room for detected rays."""
+class Detections(NamedTuple):
+    """Arrivals, weighed by the detector."""
 
     ray: NDArray[np.int64]
+    """Number of the launched ray that each comes from, (D,)."""
     path: NDArray[np.int64]
+    """Code of the light path, (D,)."""
     amplitude: NDArray[np.float64]
+    """Amplitude, weighed by the detector, (D,)."""
     optical_path_length: NDArray[np.float64]
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
-    vx: NDArray[np.float64]
-    vy: NDArray[np.float64]
+    """Path from the focus to the fibre, beyond that of an axial ray through the lens, (D,), µm."""
+    segments: int
+    """Straight pieces of ray that were traced."""
+    outcomes: NDArray[np.int64]
+    """How often each `Outcome` came about, (7,)."""
+
+
+class _Arrived(NamedTuple):
+    """Room for rays that arrive, one in a row."""
+
+    labels: NDArray[np.int64]
+    """Ray and path."""
+    numbers: NDArray[np.float64]
+    """Optical path, x, y, vx and vy, and what it carries."""
 
 
 class _Waiting(NamedTuple):
@@ -89,38 +109,24 @@ class _Waiting(NamedTuple):
 
 
 @register_jitable(forceinline=True)
-def _room_for_found(size: int) -> _Found:
-    return _Found(
-        np.empty(size, np.int64), np.empty(size, np.int64), np.empty(size), np.empty(size),
-        np.empty(size), np.empty(size), np.empty(size), np.empty(size),
-    )  # fmt: skip
-
-
-@register_jitable(forceinline=True)
-def _doubled(found: _Found) -> _Found:
-    return _Found(
-        np.concatenate((found.ray, np.empty_like(found.ray))),
-        np.concatenate((found.path, np.empty_like(found.path))),
-        np.concatenate((found.amplitude, np.empty_like(found.amplitude))),
-        np.concatenate((found.optical_path_length, np.empty_like(found.optical_path_length))),
-        np.concatenate((found.x, np.empty_like(found.x))),
-        np.concatenate((found.y, np.empty_like(found.y))),
-        np.concatenate((found.vx, np.empty_like(found.vx))),
-        np.concatenate((found.vy, np.empty_like(found.vy))),
+def _doubled(arrived: _Arrived) -> _Arrived:
+    return _Arrived(
+        np.concatenate((arrived.labels, np.empty_like(arrived.labels))),
+        np.concatenate((arrived.numbers, np.empty_like(arrived.numbers))),
     )
 
 
 @register_jitable(forceinline=True)
-def _room_for_waiting(size: int) -> _Waiting:
+def _room_for_waiting(num: int, size: int) -> _Waiting:
     return _Waiting(
-        np.empty((size, BLOCK)), np.empty(size, np.int64), np.empty(size, np.int64),
-        np.empty(size, np.int64), np.empty(size, np.int64),
+        np.empty((num, size)), np.empty(num, np.int64), np.empty(num, np.int64),
+        np.empty(num, np.int64), np.empty(num, np.int64),
     )  # fmt: skip
 
 
 @register_jitable(forceinline=True)
 def _wait(waiting: _Waiting, top: int, lanes: int, departure: int, meetings: int, path: int) -> int:
-    """Have the block above `top` wait, as the next; give the new top."""
+    """Have the block above `top` wait, as the next; return the new top."""
     waiting.lanes[top + 1] = lanes
     waiting.departure[top + 1] = departure
     waiting.meetings[top + 1] = meetings
@@ -129,131 +135,135 @@ def _wait(waiting: _Waiting, top: int, lanes: int, departure: int, meetings: int
 
 
 @register_jitable(forceinline=True)
-def _detect(
-    detector: Detector,
-    focus: float,
-    n_glass: float,
-    beam: Beam,
-    block: Block,
-    n: int,
-    code: int,
-    found: _Found,
-    detected: int,
-    outcomes: NDArray[np.int64],
-    to_focus: Lanes,
-    at_focus: Lanes,
-    at_objective: Lanes,
-) -> tuple[_Found, int]:
-    """Note which of n lanes on their way to the objective are detected.
+def _arrive(
+    faces: Faces, detector: Detector, within: Acceptance, focus: float, block: Block, n: int,
+    code: int, arrived: _Arrived, count: int, outcomes: NDArray[np.int64], to_focus: Lanes,
+    at_focus: Lanes, at_objective: Lanes, carried: int, move: Callable[..., None],
+) -> tuple[_Arrived, int]:  # fmt: skip
+    """Note which of n lanes on their way to the objective are accepted.
 
-    The last three are room to work in.
+    The three `Lanes` are room to work in; the last two arguments are of the tree's `Carry`.
     """
     for i in range(n):
         here, along = position(block, i), direction(block, i)
-        to_focus[i], at_focus[i] = arrival(focus, here, along)
-        _, at_objective[i] = arrival(focus - detector.focus_distance, here, along)
+        to_focus[i], at_focus[i] = at_plane(focus, here, along)
+        _, at_objective[i] = at_plane(focus - detector.focus_distance, here, along)
     for i in range(n):
-        outcome = fate(detector, at_focus[i], at_objective[i])
+        outcome = fate(within, at_focus[i], at_objective[i])
         outcomes[outcome] += 1
         if outcome == Outcome.DETECTED:
-            if detected == found.ray.size:
-                found = _doubled(found)
-            weight, to_fibre = collect(detector, n_glass, to_focus[i], at_focus[i])
-            ray = int(block[RAY + i])
-            found.ray[detected] = beam.number[ray]
-            found.path[detected] = code
-            found.amplitude[detected] = beam.amplitude[ray] * block[AMPLITUDE + i] * weight
-            found.optical_path_length[detected] = block[PATH + i] + to_fibre
-            found.x[detected] = block[X + i] + to_focus[i] * block[VX + i]
-            found.y[detected] = block[Y + i] + to_focus[i] * block[VY + i]
-            found.vx[detected], found.vy[detected] = block[VX + i], block[VY + i]
-            detected += 1
-    return found, detected
+            if count == arrived.labels.shape[0]:
+                arrived = _doubled(arrived)
+            rest = to_fibre(detector, faces.n_objective, to_focus[i], at_focus[i])
+            move(faces, 0, block, i, to_focus[i], block, i)
+            labels, numbers = arrived.labels[count], arrived.numbers[count]
+            labels[0], labels[1] = int(block[RAY + i]), code
+            numbers[0] = block[PATH + i] + rest
+            numbers[1] = block[X + i] + to_focus[i] * block[VX + i]
+            numbers[2] = block[Y + i] + to_focus[i] * block[VY + i]
+            numbers[3], numbers[4] = block[VX + i], block[VY + i]
+            for c in range(carried):
+                numbers[_OWN + c] = block[CARRIED + c * LANES + i]
+            count += 1
+    return arrived, count
 
 
-@compiled()
-def trace_tree(
-    faces: Faces,
-    beam: Beam,
-    detector: Detector,
-    focus: float,
-    max_intersections: int,
-    min_amplitude: float,
-) -> tuple[Any, ...]:
-    """Trace the tree, in compiled code: `trace` says what, and `Detections` what comes back."""
-    # a plain tuple: making a named one on the way out crashes when an interrupt is waiting
-    found, detected, segments = _room_for_found(beam.vx.size), 0, 0
-    outcomes = np.zeros(OUTCOMES, np.int64)
-    # depth first: above each block on the way wait two for each face that it can meet
-    waiting = _room_for_waiting((2 * faces.kind.size + 1) * (max_intersections + 1))
-    distance, cos_i, cos_t = np.empty(LANES), np.empty(LANES), np.empty(LANES)
-    cos_met, wanted = np.empty(LANES), np.empty(LANES, np.bool_)
-    face, chosen = np.empty(LANES, np.int64), np.empty(LANES, np.uint32)
+def make_tree(carry: Carry) -> Callable[..., tuple[Any, ...]]:
+    """Return the compiled tree whose rays carry what is asked for.
 
-    for first in range(0, beam.vx.size, LANES):
-        count = min(LANES, beam.vx.size - first)
-        launch(beam, first, count, focus, waiting.blocks[0])
-        top = _wait(waiting, -1, count, 0, 0, 1)
-        while top >= 0:
-            n, d, m = waiting.lanes[top], waiting.departure[top], waiting.meetings[top]
-            code, block = waiting.path[top], waiting.blocks[top]
-            waiting.lanes[top] = 0  # done, but its children's blocks go above it
-            if n == 0:
-                top -= 1
-                continue
-            segments += n
-            if faces.to_objective[d]:
-                found, detected = _detect(
-                    detector,
-                    focus,
-                    faces.n_objective,
-                    beam,
-                    block,
-                    n,
-                    code,
-                    found,
-                    detected,
-                    outcomes,
-                    distance,
-                    cos_i,
-                    cos_t,
-                )
-                continue
-            meet_nearest(faces, d, block, n, face, distance, cos_i, cos_met, cos_t)
-            escaped = n
-            for choice in range(faces.first[d], faces.first[d + 1]):
-                f = faces.next_face[choice]
-                count = choose(face, f, n, chosen)
-                escaped -= count
-                if m == max_intersections:
-                    outcomes[Outcome.SPENT] += count
+    It takes what `arrivals` takes, the scene as `Faces` and the radii within which rays are
+    accepted after the detector, and returns the labels (D, 2) of the rays that arrive (place in the
+    beam, code of the path), their numbers (5 + C, D), segments and outcomes.
+
+    Parameters
+    ----------
+    carry : Carry
+        Its functions must be those of a module: they are part of the key under which the compiled
+        code is kept.
+    """
+    carried, launch_carried, move, split_carried, strength = carry
+    own = _OWN + carried
+
+    @compiled()
+    def trace_tree(
+        faces: Faces,
+        beam: Beam,
+        detector: Detector,
+        within: Acceptance,
+        focus: float,
+        max_intersections: int,
+        min_amplitude: float,
+    ) -> tuple[Any, ...]:
+        # a plain tuple: making a named one on the way out crashes when an interrupt is waiting
+        rays = beam.vx.size
+        arrived = _Arrived(np.empty((rays, 2), np.int64), np.empty((rays, own)))
+        count_arrived, segments = 0, 0
+        outcomes = np.zeros(OUTCOMES, np.int64)
+        # depth first: above each block on the way wait two for each face that it can meet
+        waiting = _room_for_waiting(
+            (2 * faces.kind.size + 1) * (max_intersections + 1), CARRIED + carried * LANES
+        )
+        distance, cos_i, cos_t = np.empty(LANES), np.empty(LANES), np.empty(LANES)
+        cos_met, wanted = np.empty(LANES), np.empty(LANES, np.bool_)
+        face, chosen = np.empty(LANES, np.int64), np.empty(LANES, np.uint32)
+
+        for first in range(0, rays, LANES):
+            count = min(LANES, rays - first)
+            launch(beam, first, count, focus, waiting.blocks[0], launch_carried)
+            top = _wait(waiting, -1, count, 0, 0, 1)
+            while top >= 0:
+                n, d, m = waiting.lanes[top], waiting.departure[top], waiting.meetings[top]
+                code, block = waiting.path[top], waiting.blocks[top]
+                waiting.lanes[top] = 0  # done, but its children's blocks go above it
+                if n == 0:
+                    top -= 1
                     continue
-                met, beyond = waiting.blocks[top + 1], waiting.blocks[top + 2]
-                advance_chosen(block, n, chosen, count, distance, cos_i, faces.n_i[f], met, cos_met)
-                total = split(faces, f, met, count, cos_met, cos_t, beyond)
-                returned, through = sift(met, beyond, count, total, cos_t, min_amplitude, wanted)
-                outcomes[Outcome.TOTALLY_REFLECTED] += total
-                outcomes[Outcome.FAINT] += 2 * count - total - through - returned
-                here = code * faces.kind.size + 2 * faces.surface[f]
-                top = _wait(waiting, top, returned, faces.after_reflection[f], m + 1, here)
-                top = _wait(waiting, top, through, faces.after_transmission[f], m + 1, here + 1)
-            outcomes[Outcome.ESCAPED] += escaped
-    return (
-        found.ray[:detected].copy(),
-        found.path[:detected].copy(),
-        found.amplitude[:detected].copy(),
-        found.optical_path_length[:detected].copy(),
-        found.x[:detected].copy(),
-        found.y[:detected].copy(),
-        found.vx[:detected].copy(),
-        found.vy[:detected].copy(),
-        segments,
-        outcomes,
-    )
+                segments += n
+                if faces.to_objective[d]:
+                    arrived, count_arrived = _arrive(
+                        faces, detector, within, focus, block, n, code, arrived, count_arrived,
+                        outcomes, distance, cos_i, cos_t, carried, move,
+                    )  # fmt: skip
+                    continue
+                meet_nearest(faces, d, block, n, face, distance, cos_i, cos_met, cos_t)
+                escaped = n
+                for choice in range(faces.first[d], faces.first[d + 1]):
+                    f = faces.next_face[choice]
+                    count = choose(face, f, n, chosen)
+                    escaped -= count
+                    if m == max_intersections:
+                        outcomes[Outcome.SPENT] += count
+                        continue
+                    met, beyond = waiting.blocks[top + 1], waiting.blocks[top + 2]
+                    advance_chosen(
+                        faces, f, block, n, chosen, count, distance, cos_i, met, cos_met, move
+                    )
+                    total = split(faces, f, met, count, cos_met, cos_t, beyond, split_carried)
+                    returned, through = sift(
+                        met, beyond, count, total, cos_t, min_amplitude, wanted, carried, strength
+                    )
+                    outcomes[Outcome.TOTALLY_REFLECTED] += total
+                    outcomes[Outcome.FAINT] += 2 * count - total - through - returned
+                    here = code * faces.kind.size + 2 * faces.surface[f]
+                    top = _wait(waiting, top, returned, faces.after_reflection[f], m + 1, here)
+                    top = _wait(waiting, top, through, faces.after_transmission[f], m + 1, here + 1)
+                outcomes[Outcome.ESCAPED] += escaped
+        return (
+            arrived.labels[:count_arrived].T.copy(),
+            arrived.numbers[:count_arrived].T.copy(),
+            segments,
+            outcomes,
+        )
+
+    return trace_tree
+
+
+trace_amplitudes = make_tree(AMPLITUDE)
+"""The tree of unpolarised light."""
 
 
 def check_reach(scene: Scene, detector: Detector, focus: float, max_intersections: int) -> None:
-    """Refuse what `trace` can't trace.
+    """Refuse what can't be traced.
 
     Raises
     ------
@@ -273,35 +283,41 @@ def check_reach(scene: Scene, detector: Detector, focus: float, max_intersection
         )
 
 
-def trace(
+def arrivals(
     scene: Scene,
     beam: Beam,
     detector: Detector,
     focus: float,
     max_intersections: int = 11,
     min_amplitude: float = 0.0,
-) -> Detections:
+    wavenumber: float = math.nan,
+    tree: Callable[..., tuple[Any, ...]] = trace_amplitudes,
+) -> Arrivals:
     """Trace a beam through a scene, splitting every ray at every surface.
 
     Parameters
     ----------
     scene : Scene
-        Surfaces and media; the objective lies in the glass below them.
+        Surfaces, and the regions between them.
     beam : Beam
         Rays aimed at the focus, N of them.
     detector : Detector
-        What receives the rays that return.
+        What accepts the rays that return.
     focus : float
         Height of the focus above z = 0 as if all were glass, µm; below the focus distance.
     max_intersections : int
-        Surfaces that one ray may meet; a ray that has met just as many can still be detected.
+        Surfaces that one ray may meet; a ray that has met just as many can still arrive.
     min_amplitude : float
         Rays fainter than this, relative to their launch amplitude, are dropped.
+    wavenumber : float
+        At which materials are taken, 1/µm; without one all must be constant.
+    tree : callable
+        From `make_tree`: it says what the rays carry.
 
     Returns
     -------
-    Detections
-        The detected rays, and how all others ended.
+    Arrivals
+        The accepted rays, and how all others ended.
 
     Raises
     ------
@@ -309,6 +325,33 @@ def trace(
         As `check_reach` says.
     """
     check_reach(scene, detector, focus, max_intersections)
+    (ray, path), numbers, segments, outcomes = tree(
+        faces_at(scene, wavenumber), beam, detector, acceptance(detector), focus,
+        max_intersections, min_amplitude,
+    )  # fmt: skip
+    length, x, y, vx, vy = numbers[:_OWN]
+    return Arrivals(ray, path, length, x, y, vx, vy, numbers[_OWN:], segments, outcomes)
+
+
+def trace(
+    scene: Scene,
+    beam: Beam,
+    detector: Detector,
+    focus: float,
+    max_intersections: int = 11,
+    min_amplitude: float = 0.0,
+    wavenumber: float = math.nan,
+) -> Detections:
+    """Trace a beam of unpolarised light, and weigh what arrives.
+
+    Arguments and exceptions as in `arrivals`.
+    """
+    found = arrivals(scene, beam, detector, focus, max_intersections, min_amplitude, wavenumber)
     return Detections(
-        *trace_tree(faces_of(scene), beam, detector, focus, max_intersections, min_amplitude)
+        beam.number[found.ray],
+        found.path,
+        beam.amplitude[found.ray] * found.carried[0] * weight(detector, found.x, found.y),
+        found.optical_path_length,
+        found.segments,
+        found.outcomes,
     )

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from octsim.base.compiled import compiled
 from octsim.optics.beam import Beam, aim
 from octsim.optics.detector import Detector
-from octsim.optics.scene import Cylinder, Scene
+from octsim.optics.scene import Plane, Scene
 from octsim.schemes.light import AccuracyStatus, Light
 from octsim.schemes.paths.aperture_tiles import Tile, images
 from octsim.schemes.paths.chebyshev import HIGHEST, LOOK, tables
@@ -27,10 +27,11 @@ from octsim.schemes.paths.survey import COLUMNS, recall, share_of_faint, survey_
 from octsim.schemes.paths.tile_nodes import aim_at_tile
 from octsim.schemes.paths.waiting_tiles import promising
 from octsim.schemes.paths.workspace import Found, Room, Survey, Task, room_for_nodes, room_for_point
-from octsim.tracing.blocks import LANES
-from octsim.tracing.faces import faces_of
-from octsim.tracing.follow import follow, steps_of
-from octsim.tracing.tree import check_reach, trace
+from octsim.tracing.faces import faces_at
+from octsim.tracing.follow import follow
+from octsim.tracing.lanes import LANES
+from octsim.tracing.light_paths import steps_of
+from octsim.tracing.tree import arrivals, check_reach
 
 BUDGET = 1_000_000
 """Segments traced for one point, at most."""
@@ -184,23 +185,20 @@ def _integrate(
     )  # fmt: skip
 
 
-def symmetric_in_x(scene: Scene) -> bool:
-    """Tell whether the mirror image of a scene in the plane x = 0 is the scene itself."""
-    return all(s.x == 0 for s in scene.surfaces if isinstance(s, Cylinder))
-
-
-def light_misses(scene: Scene, detector: Detector, focus: float) -> bool:
-    """Tell whether the outermost light, to either side in x, meets planes alone."""
-    if not any(isinstance(surface, Cylinder) for surface in scene.surfaces):
+def light_misses(scene: Scene, detector: Detector, focus: float, wavenumber: float) -> bool:
+    """Return whether the outermost light, to either side in x, meets planes alone."""
+    flat = tuple(surface for surface in scene.surfaces if isinstance(surface, Plane))
+    if len(flat) == len(scene.surfaces):
         return False
     radius = np.array([-detector.objective_radius, detector.objective_radius])
     vx, vy, vz = aim(radius, np.zeros(2), detector.focus_distance)
-    planes = replace(
-        scene, surfaces=tuple(s for s in scene.surfaces if not isinstance(s, Cylinder))
-    )
-    for side in (1,) if symmetric_in_x(scene) else (0, 1):
+    planes = replace(scene, surfaces=flat)
+    for side in (1,) if scene.symmetry.x else (0, 1):
         beam = Beam(vx[[side]], vy[[side]], vz[[side]], np.ones(1), np.zeros(1, np.int64))
-        met = [trace(which, beam, detector, focus, 3).segments for which in (scene, planes)]
+        met = [
+            arrivals(which, beam, detector, focus, 3, wavenumber=wavenumber).segments
+            for which in (scene, planes)
+        ]
         if met[0] == met[1]:
             return True
     return False
@@ -225,7 +223,8 @@ def integrate(
     Parameters
     ----------
     scene : Scene
-        Surfaces and media; the objective lies in the glass below them.
+        Surfaces, and the regions between them; its own mirror image in the plane y = 0. Materials
+        are taken at the middle of the band.
     detector : Detector
         What receives the rays that return.
     focus : float
@@ -247,13 +246,16 @@ def integrate(
     Raises
     ------
     ValueError
-        As `octsim.tracing.tree.trace` does.
+        As `octsim.tracing.tree.check_reach` does, or if the scene lacks that symmetry.
     """
     check_reach(scene, detector, focus, max_intersections)
-    symmetric = symmetric_in_x(scene)
+    symmetric, mirrored = scene.symmetry
+    if not mirrored:
+        raise ValueError("the scene is not symmetric in y, which scheme paths takes for granted")
     low, high = band
+    middle = (low + high) / 2
     task = Task(
-        faces_of(scene), symmetric, detector, focus, (low + high) / 2, high,
+        faces_at(scene, middle), symmetric, detector, focus, middle, high,
         *tables(symmetric), *tables(True), rules(),
     )  # fmt: skip
     path, amplitude, rough_amplitude, optical_path_length, missing, segments, status = _integrate(
@@ -267,7 +269,7 @@ def integrate(
         missing,
         segments,
         AccuracyStatus.AT_AN_EDGE
-        if status == AccuracyStatus.REACHED and light_misses(scene, detector, focus)
+        if status == AccuracyStatus.REACHED and light_misses(scene, detector, focus, middle)
         else AccuracyStatus(status),
     )
 

@@ -13,6 +13,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from octsim.optics.detector import falloff
 from octsim.schemes.paths.aperture_tiles import Tile
 from octsim.schemes.paths.chebyshev import HIGHEST, polynomials
 
@@ -145,8 +146,8 @@ def falloffs(cut: Cut, xi: float, line: Line, y: float) -> tuple[float, float]:
     scale_x = xi * math.sqrt(1 - y * y) if cut.symmetric else 1.0
     scale_x, scale_y = scale_x / (cos * cut.detector_radius), y / (cos * cut.detector_radius)
     return (
-        1 - (to_x * scale_x) ** 2 - (to_y * scale_y) ** 2,
-        1 - (rough_x * scale_x) ** 2 - (rough_y * scale_y) ** 2,
+        falloff((to_x * scale_x) ** 2, (to_y * scale_y) ** 2),
+        falloff((rough_x * scale_x) ** 2, (rough_y * scale_y) ** 2),
     )
 
 

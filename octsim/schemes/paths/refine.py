@@ -30,7 +30,7 @@ from octsim.schemes.paths.tile_nodes import (
 )
 from octsim.schemes.paths.waiting_tiles import push, push_halves
 from octsim.schemes.paths.workspace import MOST_TILES, Agenda, Found, Room, Task
-from octsim.tracing.blocks import LANES
+from octsim.tracing.lanes import LANES
 
 MIXED = 4
 """Nodes along each axis of a tile of which not all rays take the path."""

@@ -5,28 +5,20 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.optics.beam import Beam
-from octsim.optics.detector import Detector, Outcome
+from octsim.optics.detector import Acceptance, Outcome
 from octsim.schemes.paths.aperture_tiles import Tile, area, between
 from octsim.schemes.paths.chebyshev import LOOK
 from octsim.schemes.paths.patch_by_corners import NEAR_AN_EDGE, USUALLY, Cells, reached
 from octsim.schemes.paths.tile_nodes import aim_at_tile, followed_of
 from octsim.schemes.paths.workspace import Room, Survey, Task
-from octsim.tracing.blocks import LANES
-from octsim.tracing.faces import Faces, Kind
+from octsim.tracing.faces import Faces, is_flat
 from octsim.tracing.follow import note_return
-from octsim.tracing.tree import trace_tree
+from octsim.tracing.lanes import LANES
+from octsim.tracing.tree import trace_amplitudes
 
 CLOSER_LOOKS = 6
 COLUMNS = 24
 """Nodes along s where part of the aperture's light passes a cylinder by."""
-
-
-@register_jitable(forceinline=True)
-def without_bounds(detector: Detector) -> Detector:
-    """Give a detector that takes every ray that returns, and weighs all alike."""
-    return Detector(
-        np.inf, detector.focus_distance, np.inf, detector.magnification, detector.focal_length
-    )
 
 
 @register_jitable
@@ -52,10 +44,12 @@ def survey_of(
         room.beam.vx[: n * m], room.beam.vy[: n * m], room.beam.vz[: n * m],
         room.beam.amplitude[: n * m], room.beam.number[: n * m],
     )  # fmt: skip
-    ray, codes, amplitude, _, x, y, vx, vy, segments, outcomes = trace_tree(
-        task.faces, beam, without_bounds(task.detector), task.focus, max_intersections,
+    # all that returns: rays beside the detector tell where between them a patch is
+    labels, numbers, segments, outcomes = trace_amplitudes(
+        task.faces, beam, task.detector, Acceptance(np.inf, np.inf), task.focus, max_intersections,
         min_amplitude,
     )  # fmt: skip
+    codes = labels[1]
     # one block of rays, so the rays of a path stand together
     firsts = np.flatnonzero(np.append(True, codes[1:] != codes[:-1])[: codes.size])
     lasts = np.append(firsts[1:], codes.size)[: firsts.size]
@@ -68,12 +62,12 @@ def survey_of(
         beyond,
         np.zeros(firsts.size),
         np.zeros(firsts.size),
-        ray,
-        amplitude,
-        x,
-        y,
-        vx,
-        vy,
+        labels[0],
+        numbers[5],
+        numbers[1],
+        numbers[2],
+        numbers[3],
+        numbers[4],
     )
     every = Cells(0, n - 1, 0, m - 1)
     for p in range(firsts.size):
@@ -102,9 +96,7 @@ def curved(faces: Faces, code: int) -> bool:
     rest = code
     while rest > 1:
         for f in range(faces.kind.size):
-            if faces.surface[f] == rest % faces.kind.size // 2 and (
-                faces.kind[f] == Kind.CYLINDER_FROM_INSIDE
-            ):
+            if faces.surface[f] == rest % faces.kind.size // 2 and not is_flat(faces.kind[f]):
                 return True
         rest //= faces.kind.size
     return False

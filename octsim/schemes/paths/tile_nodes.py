@@ -7,6 +7,7 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.optics.beam import Beam, aim
+from octsim.optics.detector import falloff
 from octsim.schemes.paths.aperture_tiles import Tile, across, images
 from octsim.schemes.paths.chebyshev import FIT, trailing, transform
 from octsim.schemes.paths.line_crossings import LESS_S, LESS_V, Cut
@@ -120,7 +121,7 @@ def weigh_crudely(
                 continue
             off_axis = math.hypot(bundle.x[k], bundle.y[k]) / (bundle.cos[k] * radius)
             place = 0.25 * (right - left) * (above - below) * math.sqrt(1 - v)
-            room.weight[i, j] = multiplicity * place * max(1 - off_axis * off_axis, 0.0)
+            room.weight[i, j] = multiplicity * place * max(falloff(off_axis * off_axis), 0.0)
             room.rough_weight[i, j] = (1 - CRUDE) * room.weight[i, j]
             size += room.weight[i, j] * abs(bundle.amplitude[k])
     return size, CRUDE * size

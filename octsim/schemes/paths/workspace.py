@@ -13,9 +13,10 @@ from octsim.schemes.paths.chebyshev import HIGHEST
 from octsim.schemes.paths.line_crossings import Line, Map, room_for_line
 from octsim.schemes.paths.patch_by_fit import Search, room_for_search
 from octsim.schemes.paths.patch_integrals import Rules
-from octsim.tracing.blocks import LANES
 from octsim.tracing.faces import Faces
-from octsim.tracing.follow import LONGEST, Bundle, Workspace, room_for_bundle, room_for_following
+from octsim.tracing.follow import Bundle, Workspace, room_for_bundle, room_for_following
+from octsim.tracing.lanes import LANES
+from octsim.tracing.light_paths import LONGEST
 
 MOST_TILES = 4096
 """Tiles of one path that can wait."""
