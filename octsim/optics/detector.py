@@ -157,7 +157,7 @@ def weight(
 
 @register_jitable(forceinline=True)
 def lens_correction(squared_radius: float, magnification: float, focal_length: float) -> float:
-    r"""Optical path from the focal point to the fibre, beyond that on the axis, in µm.
+    r"""Return the optical path from the focal point to the fibre, beyond that on the axis, in µm.
 
     .. math:: M (\sqrt{f^2 + \rho^2} - f) = M \rho^2 / (\sqrt{f^2 + \rho^2} + f)
 
@@ -185,3 +185,25 @@ def to_fibre(detector: Detector, n_objective: float, to_focus: float, at_focus: 
     """
     correction = lens_correction(at_focus, detector.magnification, detector.focal_length)
     return n_objective * to_focus + correction
+
+
+@register_jitable(forceinline=True)
+def rim_margin(detector: Detector, x: float, y: float, vx: float, vy: float, cos: float) -> float:
+    """Return cos² θ (1 − (radius at the objective / that of its rim)²) of a returning ray.
+
+    It is positive for one that is accepted there, and smooth where θ comes near a right angle.
+
+    Parameters
+    ----------
+    detector : Detector
+        The receiver.
+    x, y : float
+        Where the ray leaves the focal plane, times cos θ, µm.
+    vx, vy : float
+        Its unit direction.
+    cos : float
+        Cosine of its angle θ with the optical axis.
+    """
+    at_x, at_y = x + detector.focus_distance * vx, y + detector.focus_distance * vy
+    rim = RIM * detector.objective_radius
+    return cos * cos - (at_x * at_x + at_y * at_y) / (rim * rim)

@@ -8,7 +8,7 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.optics.beam import Beam
-from octsim.optics.detector import RIM, Detector, at_plane, to_fibre
+from octsim.optics.detector import Detector, at_plane, rim_margin, to_fibre
 from octsim.tracing.blocks import advance_chosen, choose, keep, launch, meet_nearest, split
 from octsim.tracing.carry import AMPLITUDE
 from octsim.tracing.faces import Faces
@@ -29,14 +29,14 @@ class Bundle(NamedTuple):
     cos: NDArray[np.float64]
     """cos θ, (N,)."""
     inside: NDArray[np.float64]
-    """cos² θ (1 − (radius at the objective / that of its rim)²), (N,)."""
+    """`octsim.optics.detector.rim_margin`, (N,)."""
     amplitude: NDArray[np.float64]
     """Product of the Fresnel coefficients, (N,)."""
     optical_path_length: NDArray[np.float64]
     """Path from the focus to the fibre, (N,), µm."""
 
 
-class Workspace(NamedTuple):
+class FollowRoom(NamedTuple):
     """Room for a block of rays on its way."""
 
     blocks: NDArray[np.float64]
@@ -50,9 +50,9 @@ class Workspace(NamedTuple):
 
 
 @register_jitable
-def room_for_following() -> Workspace:
+def room_for_following() -> FollowRoom:
     """Make the room that `follow` works in."""
-    return Workspace(
+    return FollowRoom(
         np.empty((3, CARRIED + _CARRIED * LANES)), np.empty(LANES), np.empty(LANES),
         np.empty(LANES), np.empty(LANES), np.empty(LANES, np.bool_), np.empty(LANES, np.int64),
         np.empty(LANES, np.uint32),
@@ -78,7 +78,7 @@ def follow(
     n: int,
     detector: Detector,
     focus: float,
-    room: Workspace,
+    room: FollowRoom,
     bundle: Bundle,
 ) -> int:
     """Follow n rays along one light path, those that take it; return the segments traced.
@@ -99,7 +99,7 @@ def follow(
         What receives them; those beside it are followed too.
     focus : float
         Height of the focus, µm.
-    room : Workspace
+    room : FollowRoom
         Room to work in.
     bundle : Bundle
         What became of the rays: filled in.
@@ -152,8 +152,6 @@ def note_return(
 ) -> None:
     """Note the line along which a ray returns, by its place in the focal plane and direction."""
     cos = math.sqrt(max(1 - vx * vx - vy * vy, 0.0))
-    at_x, at_y = x * cos + detector.focus_distance * vx, y * cos + detector.focus_distance * vy
     bundle.followed[ray] = True
     bundle.x[ray], bundle.y[ray], bundle.cos[ray] = x * cos, y * cos, cos
-    rim = RIM * detector.objective_radius
-    bundle.inside[ray] = cos * cos - (at_x * at_x + at_y * at_y) / (rim * rim)
+    bundle.inside[ray] = rim_margin(detector, x * cos, y * cos, vx, vy, cos)

@@ -44,7 +44,8 @@ from octsim.tracing.lanes import (
 )
 
 OUTCOMES = len(Outcome)
-_OWN = 5  # numbers of an arrival before what it carries
+LENGTH, AT_X, AT_Y, AT_VX, AT_VY, FIRST_CARRIED = range(6)
+"""Numbers of a ray that arrives, as a tree returns them; see `Arrivals`."""
 
 
 class Arrivals(NamedTuple):
@@ -158,12 +159,12 @@ def _arrive(
             move(faces, 0, block, i, to_focus[i], block, i)
             labels, numbers = arrived.labels[count], arrived.numbers[count]
             labels[0], labels[1] = int(block[RAY + i]), code
-            numbers[0] = block[PATH + i] + rest
-            numbers[1] = block[X + i] + to_focus[i] * block[VX + i]
-            numbers[2] = block[Y + i] + to_focus[i] * block[VY + i]
-            numbers[3], numbers[4] = block[VX + i], block[VY + i]
+            numbers[LENGTH] = block[PATH + i] + rest
+            numbers[AT_X] = block[X + i] + to_focus[i] * block[VX + i]
+            numbers[AT_Y] = block[Y + i] + to_focus[i] * block[VY + i]
+            numbers[AT_VX], numbers[AT_VY] = block[VX + i], block[VY + i]
             for c in range(carried):
-                numbers[_OWN + c] = block[CARRIED + c * LANES + i]
+                numbers[FIRST_CARRIED + c] = block[CARRIED + c * LANES + i]
             count += 1
     return arrived, count
 
@@ -182,7 +183,7 @@ def make_tree(carry: Carry) -> Callable[..., tuple[Any, ...]]:
         code is kept.
     """
     carried, launch_carried, move, split_carried, strength = carry
-    own = _OWN + carried
+    size = FIRST_CARRIED + carried
 
     @compiled()
     def trace_tree(
@@ -196,7 +197,7 @@ def make_tree(carry: Carry) -> Callable[..., tuple[Any, ...]]:
     ) -> tuple[Any, ...]:
         # a plain tuple: making a named one on the way out crashes when an interrupt is waiting
         rays = beam.vx.size
-        arrived = _Arrived(np.empty((rays, 2), np.int64), np.empty((rays, own)))
+        arrived = _Arrived(np.empty((rays, 2), np.int64), np.empty((rays, size)))
         count_arrived, segments = 0, 0
         outcomes = np.zeros(OUTCOMES, np.int64)
         # depth first: above each block on the way wait two for each face that it can meet
@@ -329,8 +330,9 @@ def arrivals(
         faces_at(scene, wavenumber), beam, detector, acceptance(detector), focus,
         max_intersections, min_amplitude,
     )  # fmt: skip
-    length, x, y, vx, vy = numbers[:_OWN]
-    return Arrivals(ray, path, length, x, y, vx, vy, numbers[_OWN:], segments, outcomes)
+    length, x, y, vx, vy = numbers[:FIRST_CARRIED]
+    carried = numbers[FIRST_CARRIED:]
+    return Arrivals(ray, path, length, x, y, vx, vy, carried, segments, outcomes)
 
 
 def trace(

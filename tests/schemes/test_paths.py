@@ -17,9 +17,10 @@ from octsim.optics.detector import Detector
 from octsim.optics.interface import cos_transmitted_squared, fresnel
 from octsim.optics.materials import Constant
 from octsim.optics.scene import Cylinder, Plane, Region, Scene, Symmetry
-from octsim.schemes.field_sum import field_of_paths, intensity, spectrum_of
+from octsim.schemes.field_sum import intensity, spectrum_of
 from octsim.schemes.light import AccuracyStatus, Light
 from octsim.schemes.paths.integrate import integrate
+from octsim.schemes.paths.path_sum import field_of_paths
 from octsim.tracing.light_paths import path_name
 from octsim.tracing.tree import trace
 

@@ -35,7 +35,7 @@ def test_rays_can_carry_the_lengths_of_their_ways_too() -> None:
         geometric = sum(n * length for n, length in zip(index, lengths, strict=True))
         assert found.optical_path_length == pytest.approx(geometric + np.array(lens), abs=1e-12)
         assert (lengths[1] >= 0).all()
-        assert lengths[2].max() > 2.8  # through the neuron and back
+        assert lengths[2].max() >= 2.8  # through the neuron and back
 
 
 def test_compiled_trees_are_found_again_by_another_process() -> None:

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.optics.scene import Scene
-from octsim.schemes.field_sum import field_of_paths
 from octsim.schemes.light import Field, Light, LightAt, Optics, Options, PointCost
 from octsim.schemes.paths.integrate import integrate
+from octsim.schemes.paths.path_sum import field_of_paths
 
 RAY_BYTES = 32
 """Of the four numbers that are kept of a weighted ray."""

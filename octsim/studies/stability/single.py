@@ -22,7 +22,7 @@ Precision = type[np.float32] | type[np.float64]
 
 
 def _of(module: ModuleType) -> dict[str, Any]:
-    """Give a module's names, its functions with a square root that keeps the precision."""
+    """Return a module's names, its functions with a square root that keeps the precision."""
     names = dict(vars(module))
     names["math"] = SimpleNamespace(sqrt=np.sqrt, inf=math.inf)
     for name, function in vars(module).items():
@@ -42,7 +42,7 @@ class Arrival(NamedTuple):
 
 
 def _numbers(row: Any, precision: Precision) -> Any:
-    """Give a named tuple with its floats in a precision."""
+    """Return a named tuple with its floats in a precision."""
     return row._replace(
         **{
             name: precision(value) if isinstance(value, float) else value.astype(precision)
@@ -116,7 +116,7 @@ def follow_single(
 def _split(
     faces: Faces, f: int, at: Any, along: Any, cos_i: Real, transmitted: bool
 ) -> tuple[Any, Real] | None:
-    """Give the direction and the factor on the amplitude behind a face; None if there is none."""
+    """Return the direction and the factor on the amplitude behind a face; None if there is none."""
     n_i, n_t = faces.n_i[f], faces.n_t[f]
     squared = OPTICS["cos_transmitted_squared"](n_i, n_t, cos_i)
     if squared < 0 and transmitted:
