@@ -13,7 +13,8 @@ from toy_carry import LENGTHS_TOO
 from octsim.config.load import load_config
 from octsim.instrument.build import detector_of, scene_of
 from octsim.optics.detector import lens_correction
-from octsim.tracing.tree import arrivals, make_tree
+from octsim.tracing.kernel import make_tree
+from octsim.tracing.tree import arrivals
 
 CONFIG = load_config({"tracing": {"rays": 300}})
 TESTS = Path(__file__).parents[1]
@@ -42,7 +43,7 @@ def test_compiled_trees_are_found_again_by_another_process() -> None:
     code = (
         "from test_carry import CONFIG, LENGTHS_TOO, arrivals, detector_of, make_tree, scene_of\n"
         "from literal import spiral\n"
-        "from octsim.tracing.tree import trace_amplitudes\n"
+        "from octsim.tracing.kernel import trace_amplitudes\n"
         "for tree in (make_tree(LENGTHS_TOO), trace_amplitudes):\n"
         "    optics = scene_of(CONFIG, 1.4), spiral(CONFIG), detector_of(CONFIG)\n"
         "    arrivals(*optics, 0.88, tree=tree)\n"

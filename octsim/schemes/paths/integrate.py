@@ -22,7 +22,8 @@ from octsim.schemes.light import AccuracyStatus, Light
 from octsim.schemes.paths.aperture_tiles import images
 from octsim.schemes.paths.chebyshev import HIGHEST, LOOK, tables
 from octsim.schemes.paths.patch_integrals import rules
-from octsim.schemes.paths.refine import SPARE, PathGoal, Progress, settle, traced
+from octsim.schemes.paths.progress import SPARE, PathGoal, Progress, traced
+from octsim.schemes.paths.refine import settle
 from octsim.schemes.paths.survey import COLUMNS, part_of_faint, recall, survey_aperture
 from octsim.schemes.paths.tile_nodes import aim_at_tile
 from octsim.schemes.paths.waiting_tiles import OpenTile, pop_strongest
@@ -36,9 +37,10 @@ from octsim.schemes.paths.workspace import (
 )
 from octsim.tracing.faces import faces_at
 from octsim.tracing.follow import follow
+from octsim.tracing.kernel import trace_amplitudes
 from octsim.tracing.lanes import LANES
 from octsim.tracing.light_paths import steps_of
-from octsim.tracing.tree import check_reach, trace_amplitudes
+from octsim.tracing.tree import check_reach
 
 BUDGET = 1_000_000
 """Segments traced for one point, at most."""

@@ -16,6 +16,7 @@ from octsim.schemes.paths.chebyshev import FIT, HIGHEST, LOOK
 from octsim.schemes.paths.line_crossings import LESS_S, LESS_V
 from octsim.schemes.paths.patch_by_corners import Cells, corner, reached
 from octsim.schemes.paths.patch_by_fit import holding
+from octsim.schemes.paths.progress import PathGoal, Progress, left_out, spare
 from octsim.schemes.paths.tile_nodes import (
     CRUDE,
     field_errors,
@@ -34,45 +35,8 @@ from octsim.tracing.lanes import LANES
 
 MIXED = 4
 """Nodes along each axis of a partially covered tile."""
-SPARE = 2.5
-"""What may be left out of all paths, over the error that one path may have."""
 # by how much an error falls with each order, typically (its logarithm)
 _RATE_S, _RATE_V = 1.2, 2.5
-
-
-class PathGoal(NamedTuple):
-    """A light path to be integrated, and what its error may be."""
-
-    code: int
-    relative: float
-    """Error over the field."""
-    scale: float
-    """Field of all paths, as far as it is known."""
-    left_out: float
-    """Field left out already, of other paths."""
-    extrapolation: float
-    """How far quantities may go on past known corners; see `patch_by_corners`."""
-    orders: tuple[int, int]
-    """Numbers of nodes along s and v to begin with."""
-    budget: int
-    """Segments that may be traced."""
-
-
-class Progress(NamedTuple):
-    """What has become of a path so far."""
-
-    nodes: int
-    """Nodes kept, of all paths."""
-    size: float
-    """Sum of the tiles' fields, as magnitudes."""
-    filled: float
-    """Integral of the falloff over the patch."""
-    error: float
-    """Sum of the tiles' error estimates."""
-    missing: float
-    """Field that was left out."""
-    segments: int
-    """Traced."""
 
 
 class Errors(NamedTuple):
@@ -81,30 +45,6 @@ class Errors(NamedTuple):
     along_s: float
     along_v: float
     total: float
-
-
-@register_jitable(forceinline=True)
-def _spare(goal: PathGoal, progress: Progress) -> float:
-    """Return what may still be left out."""
-    may = SPARE * goal.relative * max(goal.scale, progress.size)
-    return max(may - goal.left_out - progress.missing, 0.0)
-
-
-@register_jitable(forceinline=True)
-def _left_out(progress: Progress, field: float) -> Progress:
-    return Progress(
-        progress.nodes, progress.size, progress.filled, progress.error, progress.missing + field,
-        progress.segments,
-    )  # fmt: skip
-
-
-@register_jitable(forceinline=True)
-def traced(progress: Progress, segments: int) -> Progress:
-    """Return the progress after some more segments."""
-    return Progress(
-        progress.nodes, progress.size, progress.filled, progress.error, progress.missing,
-        progress.segments + segments,
-    )  # fmt: skip
 
 
 @register_jitable
@@ -148,9 +88,11 @@ def raise_orders(
 
 @register_jitable
 def _look(
-    point: Point, work: OpenTile, spare: float, extrapolation: float, space: Workspace
+    point: Point, work: OpenTile, may_miss: float, extrapolation: float, space: Workspace
 ) -> tuple[float, OpenTile]:
-    """Have the parts of a partially covered tile wait, or leave them out.
+    """Have the parts of a partially covered tile wait, or leave them out if they are faint.
+
+    `may_miss` is the field that may still be left out.
 
     Returns
     -------
@@ -174,7 +116,7 @@ def _look(
             extrapolation,
         )  # fmt: skip
         rest = OpenTile(part, MIXED, MIXED, LOOK, allotment, bound, np.inf)
-        if bound <= 0.25 * max(spare - missing, 0.0):
+        if bound <= 0.25 * max(may_miss - missing, 0.0):
             missing += bound
         elif area(part, point.symmetric) < 0.6 * area(tile, point.symmetric):
             push(space.waiting, rest)
@@ -246,8 +188,8 @@ def _fit(
         return _kept(rays, goal, work, space, progress, size, total, error)
     # where no patch is seen there is at most a rim, as faint as the map's error leaves room for
     rim = field * min(1.0, 4 * (map_s + map_v))
-    if end or (total == 0 and rim <= 0.25 * _spare(goal, progress)):
-        return rays, _left_out(progress, rim)
+    if end or (total == 0 and rim <= 0.25 * spare(goal, progress)):
+        return rays, left_out(progress, rim)
     _refine(
         point, work, rest, total == 0, Errors(error_s, error_v, error),
         max(tolerance, relative * typical), space,
@@ -295,8 +237,8 @@ def settle(
         if end or crude:
             size, error = weigh_crudely(point, work.tile, work.n, work.m, work.kind, space)
             return _kept(rays, goal, work, space, progress, size, 0.0, error)
-        missing, work = _look(point, work, _spare(goal, progress), goal.extrapolation, space)
-        progress = _left_out(progress, missing)
+        missing, work = _look(point, work, spare(goal, progress), goal.extrapolation, space)
+        progress = left_out(progress, missing)
         if work.n == 0:
             return rays, progress
     map_tile(point, work.tile, work.n, work.m, stride, work.kind, space)
@@ -304,8 +246,8 @@ def settle(
         space.returns, work.n, work.m, work.tile, symmetric, point.detector.radius, space.search
     )
     field = cells * strongest * fraction(work.tile, symmetric)
-    if field <= 0.25 * _spare(goal, progress):
-        return rays, _left_out(progress, field)
+    if field <= 0.25 * spare(goal, progress):
+        return rays, left_out(progress, field)
     n, m = goal.orders
     rest = OpenTile(smaller, n, m, FIT, work.allotment, field, np.inf)
     if work.kind == LOOK:

@@ -13,8 +13,8 @@ from octsim.schemes.paths.tile_nodes import aim_at_tile, followed_of
 from octsim.schemes.paths.workspace import Point, Survey, Workspace
 from octsim.tracing.faces import Faces, is_flat
 from octsim.tracing.follow import note_return
+from octsim.tracing.kernel import AT_VX, AT_VY, AT_X, AT_Y, FIRST_CARRIED, trace_amplitudes
 from octsim.tracing.lanes import LANES
-from octsim.tracing.tree import AT_VX, AT_VY, AT_X, AT_Y, FIRST_CARRIED, trace_amplitudes
 
 CLOSER_LOOKS = 6
 COLUMNS = 24
