@@ -1,8 +1,10 @@
 # make results [CONFIG=mine.yaml] [CORES=2]   every dataset and figure of a run
 # make archive [CONFIG=mine.yaml]             the run as one file, for a data repository
 # make reproduce FILE=thesis.zip INTO=folder  an archive, a run or a dataset made anew there, and compared
-# make test                                   the test suite
-# make lint                                   formatting, style and types
+# make test                                   the test suite, but for trials that take long
+# make test-all                               the whole of it
+# make test-processors                        tests of numbers, as other processors compute them
+# make lint                                   formatting, style, types and what may import what
 # make docs                                   the parts of docs/ that are made
 # make bench                                  speed, as ratios within one run
 # make bench-sweeps                           what a grid of 1000 combinations takes, minutes
@@ -30,7 +32,7 @@ except octsim.ConfigError as error:
 endef
 export CHECK
 
-.PHONY: results archive reproduce test lint format docs bench bench-sweeps bench-peers kills lock \
+.PHONY: results archive reproduce test test-all test-processors lint format docs bench bench-sweeps bench-peers kills lock \
 	slurm test-slurm bench-slurm clean
 results: .venv/run
 	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
@@ -42,16 +44,23 @@ archive: .venv/run
 
 reproduce: .venv/run
 	@test -n "$(FILE)" -a -n "$(INTO)" || { echo "octsim: make reproduce needs FILE= and INTO=" >&2; exit 2; }
-	@$(BIN)/python -m octsim.cli.reproduce "$(FILE)" "$(INTO)" --cores $(CORES) $(TOLERANCE:%=--tolerance %)
+	@$(BIN)/octsim reproduce "$(FILE)" "$(INTO)" --cores $(CORES) $(TOLERANCE:%=--tolerance %)
 
 test: .venv/dev
+	$(BIN)/pytest -n 2 -m "not trial"
+
+test-all: .venv/dev
 	$(BIN)/pytest -n 2
+
+test-processors: .venv/dev
+	.ci/processors
 
 lint: .venv/dev
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/snakefmt --check Snakefile
 	$(BIN)/mypy
+	$(BIN)/lint-imports --no-logo
 
 format: .venv/dev
 	$(BIN)/ruff check --fix
@@ -89,11 +98,12 @@ bench-slurm: .venv/dev .venv/slurm
 
 COMPILE = $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate
+RUN = --extra run --extra archive
 lock: .venv/bin/python
 	$(PIP) install uv
-	$(COMPILE) pyproject.toml --group build -o requirements.lock
-	$(COMPILE) pyproject.toml --group dev -c requirements.lock -o requirements-dev.lock
-	$(COMPILE) pyproject.toml --group build --extra slurm -c requirements.lock -o requirements-slurm.lock
+	$(COMPILE) pyproject.toml $(RUN) --group build -o requirements.lock
+	$(COMPILE) pyproject.toml $(RUN) --extra stability --group dev -c requirements.lock -o requirements-dev.lock
+	$(COMPILE) pyproject.toml $(RUN) --extra slurm --group build -c requirements.lock -o requirements-slurm.lock
 	$(COMPILE) benchmarks/peers.in -o benchmarks/peers.lock
 
 bench: .venv/run
@@ -112,7 +122,7 @@ bench-peers: .venv-peers/run
 	touch $@
 
 kills: .venv/dev
-	OCTSIM_KILLS=30 $(BIN)/pytest -n 2 tests/workflow/test_kill.py tests/instrument/test_cache.py -k killed
+	OCTSIM_KILLS=30 $(BIN)/pytest -n 2 tests/workflow/test_kill.py tests/instrument/test_point_store.py -k killed
 
 clean:
 	rm -rf .venv .venv-peers results .snakemake

@@ -1,13 +1,13 @@
-# From a config to the phase slope: the stages of a run, in the order that light meets them.
+# From a config to the phase slope: the datasets of octsim/datasets/catalog.py, from first to last.
 #
 #   config ─┬─ focus_scan
 #           ├─ focus_sweep ─ focus_law ─┐   (where sweep.focus is law)
 #           └──────────────────── detections ─ spectra ─ phase_slope
 #                                              (and paths)
 #
-# Each rule names the config keys that it reads and the script whose code it runs: nothing else
-# makes it run again. Outputs are marked `update`: a script replaces them whole, at its end, so a
-# run that fails leaves what was there.
+# Each rule is a job of that table. Its params are the config keys that it reads and a digest of the
+# code that it runs: nothing else makes it run again. Outputs are marked `update`: a job replaces them
+# whole, at its end, so a run that fails leaves what was there.
 import math
 import os
 import sys
@@ -15,18 +15,20 @@ from collections.abc import Callable
 from pathlib import Path
 
 from filelock import FileLock, Timeout
-from octsim.config.models import Config
 from octsim.base.errors import OctsimError
 from octsim.base.files import require_folder
-from octsim.stages.cost_estimate import check_budget, expected
-from octsim.datasets.gallery import STAGES, TARGETS, figures_of
-from octsim.config.grid import remarks
-from octsim.stages.run_id import begin, is_latest
-from octsim.config.load import load_config
 from octsim.base.provenance import lock_file, source_digest
-from octsim.datasets.catalog import keys_read, needs_law
 from octsim.config.derive import parts_of
-from octsim.stages.workload import SCATTERED, shares_of
+from octsim.config.grid import remarks
+from octsim.config.load import load_config
+from octsim.config.models import Config
+from octsim.datasets.catalog import CATALOG, STAGES, TARGETS, Stage, jobs
+from octsim.datasets.code import code_of, figures_code
+from octsim.datasets.gallery import drawn_with, run_figures
+from octsim.datasets.keys import inputs_of, keys_read
+from octsim.stages.cost_estimate import check_budget, expected
+from octsim.stages.run_id import begin, is_latest
+from octsim.stages.workload import shares_of
 
 try:
     # the files themselves too, as snakemake's own reading lets a key stand twice
@@ -51,52 +53,64 @@ elif not is_latest(Path(f"results/{run.run}")):
     sys.exit("octsim: this job's run has ended, and another of its name has begun")
 # not workflow.cores, which in a job on a cluster are all that its node has
 CORES = int(os.environ.get("OCTSIM_CORES", workflow.cores))
-FIGURES = figures_of(run)
+FOLDER = f"results/{run.run}"
+FIGURES = run_figures(run)
 SHARES = shares_of(run)  # a stage that takes long is scattered over several jobs
-LAW_SWEPT = f"results/{run.run}/focus_law.nc" if needs_law(run) else []
-# of targets of a single config; a job of a grid says so at once, and no law is fitted for it
-LAW = LAW_SWEPT if not run.grid.varied else []
 # a measured series is a file of the user's; one that is not there is said by the job
 SERIES = [file for file in [run.expansion.series] if file and Path(file).is_file()]
-LOCK = FileLock(f"results/{run.run}/.lock")  # held from the start of a run to its end
+LOCK = FileLock(f"{FOLDER}/.lock")  # held from the start of a run to its end
 # of other targets, what was asked for once: an archive has it too, brought up to date
-BESIDE = [file for file in (f"results/{run.run}/{t}.nc" for t in TARGETS) if Path(file).is_file()]
-SCRIPTS = Path(workflow.basedir) / "workflow" / "scripts"
+BESIDE = [file for file in (f"{FOLDER}/{target}.nc" for target in TARGETS) if Path(file).is_file()]
 
 
 wildcard_constraints:
-    run=run.run,
-    stage="|".join(SCATTERED),
+    stage="|".join(SHARES),
     number=r"\d+",
     of=r"\d+",
 
 
-def made_from(script: str, *keys: str) -> dict[str, object]:
-    """Give what a rule's results follow from, besides its inputs: its code and what it reads.
+def made_from(code: str, *keys: str) -> dict[str, object]:
+    """Return what a rule's results follow from, besides its inputs: its code and what it reads.
 
     One value for the whole, as snakemake compares a rule's params as a set, without their names.
     """
-    return {"code": source_digest(SCRIPTS / f"{script}.py"), **parts_of(run.to_dict(), *keys)}
+    return {"code": code, **parts_of(run.to_dict(), *keys)}
 
 
-def of_stage(stage: str) -> dict[str, object]:
-    """Give what a stage's results follow from."""
-    return made_from(stage, *keys_read(stage, run))
+def made_from_rows(rows: tuple[Stage, ...]) -> dict[str, object]:
+    """Return what the datasets of a rule follow from, and the figures that it draws."""
+    codes = [code_of(row.name, run) for row in rows]
+    codes += [figures_code(*row.figures) for row in rows if row.beside]
+    keys = (key for row in rows for key in keys_read(row.name, run))
+    return made_from(" ".join(codes), *dict.fromkeys(keys))
+
+
+def sources(rows: tuple[Stage, ...]) -> dict[str, object]:
+    """Return the datasets that a rule's are made from, by their names."""
+    names = {name for row in rows for name in inputs_of(row, run)} - {row.name for row in rows}
+    found = {name: f"{FOLDER}/{name}.nc" for name in CATALOG if name in names}
+    if "expansion" in {row.name for row in rows}:
+        # without a series the job says so at once, and nothing is calibrated for it
+        return found | {"series": SERIES} if SERIES else {}
+    # a job of a grid says at once that it is of a single config, and no law is fitted for it
+    return {} if run.grid.varied and rows[0].beside else found
 
 
 def shares(stage: str) -> list[str]:
-    """Give the files that a stage is gathered from; none where it is one job."""
-    of = SHARES[stage] if SHARES[stage] > 1 else 0
-    return [f"results/{run.run}/shares/{stage}-{n}-of-{of}.npz" for n in range(1, of + 1)]
+    """Return the files that a stage is gathered from; none where it is one job."""
+    of = SHARES.get(stage, 1)
+    return [f"{FOLDER}/shares/{stage}-{n}-of-{of}.npz" for n in range(1, of + 1) if of > 1]
 
 
-def hands(stage: str, beside: int = 1) -> int:
-    """Give the threads of a stage that traces, unless shares do, with as many such jobs beside."""
-    return 1 if SHARES[stage] > 1 else max(1, CORES // beside)
+def threads_of(rows: tuple[Stage, ...]) -> int:
+    """Return the threads of a job: the two at the start share the cores, and scattered ones wait."""
+    if shares(rows[0].name):
+        return 1
+    return max(1, CORES // 2) if rows[0].traces and not rows[0].after else CORES
 
 
 def needs(*stages: str) -> dict[str, Callable[[object, int], int]]:
-    """Give what a job asks a cluster for: with a margin, and more each time it is tried."""
+    """Return what a job asks a cluster for: with a margin, and more each time it is tried."""
     cost = estimate.of(*stages)
     megabytes = math.ceil(600 + 1.5e-6 * cost.memory_bytes)  # and two snakemakes around it
     of = max((SHARES.get(stage, 1) for stage in stages), default=1)
@@ -111,26 +125,26 @@ onstart:
     # what is to be made, which may be less than all, may take more than was confirmed
     stages = {job.rule.name for job in workflow.persistence.dag.needrun_jobs()}
     try:
-        check_budget(run, estimate.of(*stages), Path(f"results/{run.run}"))
+        check_budget(run, estimate.of(*stages), Path(FOLDER))
     except OctsimError as error:
         sys.exit(f"octsim: {error}")
     # one run of a name at a time; the lock goes with the process, however that ends
     try:
         LOCK.acquire(blocking=False)
     except Timeout:
-        sys.exit(f"octsim: another run is at work on results/{run.run}; wait for it or stop it")
-    begin(Path(f"results/{run.run}"))
+        sys.exit(f"octsim: another run is at work on {FOLDER}; wait for it or stop it")
+    begin(Path(FOLDER))
 
 
 onsuccess:
-    for stage in ("spectra", "phase_slope"):
-        found = Path(f"results/{run.run}/logs/{stage}.log")
+    for stage in jobs(beside=False):
+        found = Path(f"{FOLDER}/logs/{stage}.log")
         lines = found.read_text().splitlines() if found.is_file() else []  # asked for less
         told = [line for line in lines if line.startswith(("octsim: ", "phase slope", "mean "))]
         print(*told, sep="\n", end="\n" if told else "", file=sys.stderr)
-    print(f"octsim: datasets and figures are in results/{run.run}/", file=sys.stderr)
-    wanted = [Path(file).name for stage in SCATTERED for file in shares(stage)]
-    for share in Path(f"results/{run.run}/shares").glob("*.npz"):
+    print(f"octsim: datasets and figures are in {FOLDER}/", file=sys.stderr)
+    wanted = [Path(file).name for stage in SHARES for file in shares(stage)]
+    for share in Path(f"{FOLDER}/shares").glob("*.npz"):
         if share.name not in wanted:  # of a run that was given up, cut otherwise
             share.unlink()
 
@@ -144,355 +158,84 @@ onerror:
 
 rule all:
     input:
-        expand("results/{run}/{stage}.nc", run=run.run, stage=STAGES),
-        expand(
-            "results/{run}/figures/{figure}.{form}",
-            run=run.run,
-            figure=FIGURES,
-            form=("png", "svg"),
-        ),
+        [f"{FOLDER}/{stage}.nc" for stage in STAGES],
+        [f"{FOLDER}/figures/{name}.{form}" for name in FIGURES for form in ("png", "svg")],
 
 
 rule share:
     input:
-        focus_law=lambda wildcards: LAW_SWEPT if wildcards.stage == "detections" else [],
-        shares=[],
+        lambda wildcards: sources((CATALOG[wildcards.stage],)).values(),
     output:
-        temp("results/{run}/shares/{stage}-{number}-of-{of}.npz"),
+        temp(f"{FOLDER}/shares/{{stage}}-{{number}}-of-{{of}}.npz"),
     log:
-        "results/{run}/logs/shares/{stage}-{number}-of-{of}.log",
+        f"{FOLDER}/logs/shares/{{stage}}-{{number}}-of-{{of}}.log",
     resources:
         mem_mb=lambda wildcards, attempt: needs(wildcards.stage)["mem_mb"](wildcards, attempt),
         runtime=lambda wildcards, attempt: needs(wildcards.stage)["runtime"](wildcards, attempt),
     params:
-        made_from=lambda wildcards: of_stage(wildcards.stage),
+        made_from=lambda wildcards: made_from_rows((CATALOG[wildcards.stage],)),
     message:
         "Trace share {wildcards.number} of {wildcards.of} of {wildcards.stage}"
     script:
-        "workflow/scripts/{wildcards.stage}.py"
+        "workflow/scripts/job.py"
 
 
-rule focus_scan:
-    input:
-        shares=shares("focus_scan"),
-    output:
-        update("results/{run}/focus_scan.nc"),
-    log:
-        "results/{run}/logs/focus_scan.log",
-        points="results/{run}/logs/focus_scan.json",
-    benchmark:
-        "results/{run}/benchmarks/focus_scan.tsv"
-    threads: hands("focus_scan", 2)
-    resources:
-        **needs("focus_scan"),
-    params:
-        made_from=of_stage("focus_scan"),
-    message:
-        "Scan the focus for one diameter"
-    script:
-        "workflow/scripts/focus_scan.py"
+for name, rows in (jobs(beside=False) | jobs(beside=True)).items():
 
-
-rule focus_sweep:
-    input:
-        shares=shares("focus_sweep"),
-    output:
-        update("results/{run}/focus_sweep.nc"),
-    log:
-        "results/{run}/logs/focus_sweep.log",
-        points="results/{run}/logs/focus_sweep.json",
-    benchmark:
-        "results/{run}/benchmarks/focus_sweep.tsv"
-    threads: hands("focus_sweep", 2)
-    resources:
-        **needs("focus_sweep"),
-    params:
-        made_from=of_stage("focus_sweep"),
-    message:
-        "Measure the intensity over the focus for the diameters of the focus law"
-    script:
-        "workflow/scripts/focus_sweep.py"
-
-
-rule focus_law:
-    input:
-        focus_sweep="results/{run}/focus_sweep.nc",
-    output:
-        gaussian_fits=update("results/{run}/gaussian_fits.nc"),
-        focus_law=update("results/{run}/focus_law.nc"),
-    log:
-        "results/{run}/logs/focus_law.log",
-    benchmark:
-        "results/{run}/benchmarks/focus_law.tsv"
-    resources:
-        **needs(),
-    params:
-        made_from=of_stage("focus_law"),
-    message:
-        "Fit Gaussians over the focus, and the focus law through their centres"
-    script:
-        "workflow/scripts/focus_law.py"
-
-
-rule detections:
-    input:
-        # a given focus needs no law, and is not traced again when the law changes
-        focus_law=LAW_SWEPT,
-        shares=shares("detections"),
-    output:
-        update("results/{run}/detections.nc"),
-    log:
-        "results/{run}/logs/detections.log",
-        points="results/{run}/logs/detections.json",
-    benchmark:
-        "results/{run}/benchmarks/detections.tsv"
-    threads: hands("detections")
-    resources:
-        **needs("detections"),
-    params:
-        made_from=of_stage("detections"),
-    message:
-        "Trace the sweep over diameters"
-    script:
-        "workflow/scripts/detections.py"
-
-
-rule spectra:
-    input:
-        detections="results/{run}/detections.nc",
-    output:
-        spectra=update("results/{run}/spectra.nc"),
-        paths=update("results/{run}/paths.nc"),
-    log:
-        "results/{run}/logs/spectra.log",
-    benchmark:
-        "results/{run}/benchmarks/spectra.tsv"
-    threads: CORES
-    resources:
-        **needs("spectra"),
-    params:
-        made_from=of_stage("spectra"),
-    message:
-        "Sum the detected rays to spectra"
-    script:
-        "workflow/scripts/spectra.py"
-
-
-rule phase_slope:
-    input:
-        spectra="results/{run}/spectra.nc",
-    output:
-        fourier=update("results/{run}/fourier.nc"),
-        phase_slope=update("results/{run}/phase_slope.nc"),
-    log:
-        "results/{run}/logs/phase_slope.log",
-    benchmark:
-        "results/{run}/benchmarks/phase_slope.tsv"
-    resources:
-        **needs("phase_slope"),
-    params:
-        made_from=of_stage("phase_slope"),
-    message:
-        "Transform the spectra and differentiate their phase over the diameter"
-    script:
-        "workflow/scripts/phase_slope.py"
+    rule:
+        name:
+            name
+        input:
+            **sources(rows),
+            shares=shares(name),
+        output:
+            **{row.name: update(f"{FOLDER}/{row.name}.nc") for row in rows},
+            figures=update(
+                [
+                    f"{FOLDER}/figures/{figure}.{form}"
+                    for row in rows
+                    if row.beside
+                    for figure in drawn_with(row.name)
+                    for form in ("png", "svg")
+                ]
+            ),
+        log:
+            f"{FOLDER}/logs/{name}.log",
+            **({"points": f"{FOLDER}/logs/{name}.json"} if rows[0].traces else {}),
+        benchmark:
+            f"{FOLDER}/benchmarks/{name}.tsv"
+        threads: threads_of(rows)
+        resources:
+            **needs(*(row.name for row in rows)),
+        params:
+            made_from=made_from_rows(rows),
+        message:
+            "{}".format("; ".join(row.message for row in rows))
+        script:
+            "workflow/scripts/job.py"
 
 
 rule figures:
     input:
         **{
-            stage: f"results/{run.run}/{stage}.nc"
-            for stage in dict.fromkeys(sum(FIGURES.values(), ()))
+            name: f"{FOLDER}/{name}.nc"
+            for name in dict.fromkeys(name for one in FIGURES.values() for name in one.sources)
         },
     output:
-        update(
-            expand(
-                "results/{{run}}/figures/{figure}.{form}",
-                figure=FIGURES,
-                form=("png", "svg"),
-            )
-        ),
+        update([f"{FOLDER}/figures/{name}.{form}" for name in FIGURES for form in ("png", "svg")]),
     log:
-        "results/{run}/logs/figures.log",
+        f"{FOLDER}/logs/figures.log",
     benchmark:
-        "results/{run}/benchmarks/figures.tsv"
+        f"{FOLDER}/benchmarks/figures.tsv"
     threads: CORES
     resources:
         **needs("spectra", "phase_slope"),
     params:
-        made_from=made_from("figures", "processing"),
+        made_from=made_from(figures_code(*(one.figure for one in FIGURES.values())), "processing"),
     message:
         "Draw the figures"
     script:
-        "workflow/scripts/figures.py"
-
-
-rule stability:
-    output:
-        stability=update(expand("results/{run}/stability.nc", run=run.run)),
-        figures=update(
-            expand("results/{run}/figures/stability.{form}", run=run.run, form=("png", "svg"))
-        ),
-    log:
-        f"results/{run.run}/logs/stability.log",
-    benchmark:
-        f"results/{run.run}/benchmarks/stability.tsv"
-    threads: CORES
-    resources:
-        **needs(),
-    params:
-        made_from=of_stage("stability"),
-    message:
-        "Measure rounding at the extremes against 50 digits"
-    script:
-        "workflow/scripts/stability.py"
-
-
-rule tradeoff:
-    output:
-        tradeoff=update(expand("results/{run}/tradeoff.nc", run=run.run)),
-        figures=update(
-            expand("results/{run}/figures/tradeoff.{form}", run=run.run, form=("png", "svg"))
-        ),
-    log:
-        f"results/{run.run}/logs/tradeoff.log",
-    benchmark:
-        f"results/{run.run}/benchmarks/tradeoff.tsv"
-    threads: CORES
-    resources:
-        **needs(),
-    params:
-        made_from=of_stage("tradeoff"),
-    message:
-        "Measure error and cost, one setting after the other"
-    script:
-        "workflow/scripts/tradeoff.py"
-
-
-rule causes:
-    input:
-        focus_law=LAW,
-    output:
-        causes=update(expand("results/{run}/causes.nc", run=run.run)),
-        figures=update(
-            expand(
-                "results/{run}/figures/{figure}.{form}",
-                run=run.run,
-                figure=("causes", "spike"),
-                form=("png", "svg"),
-            )
-        ),
-    log:
-        f"results/{run.run}/logs/causes.log",
-    benchmark:
-        f"results/{run.run}/benchmarks/causes.tsv"
-    threads: CORES
-    resources:
-        **needs(),
-    params:
-        made_from=of_stage("causes"),
-    message:
-        "Tell what makes the phase slope scatter, and spike"
-    script:
-        "workflow/scripts/causes.py"
-
-
-rule estimators:
-    input:
-        focus_law=LAW,
-    output:
-        estimators=update(expand("results/{run}/estimators.nc", run=run.run)),
-        figures=update(
-            expand("results/{run}/figures/estimators.{form}", run=run.run, form=("png", "svg"))
-        ),
-    log:
-        f"results/{run.run}/logs/estimators.log",
-    benchmark:
-        f"results/{run.run}/benchmarks/estimators.tsv"
-    threads: CORES
-    resources:
-        **needs(),
-    params:
-        made_from=of_stage("estimators"),
-    message:
-        "Compare the estimators of the phase"
-    script:
-        "workflow/scripts/estimators.py"
-
-
-rule calibration:
-    input:
-        focus_law=LAW,
-    output:
-        calibration=update(expand("results/{run}/calibration.nc", run=run.run)),
-        figures=update(
-            expand("results/{run}/figures/calibration.{form}", run=run.run, form=("png", "svg"))
-        ),
-    log:
-        f"results/{run.run}/logs/calibration.log",
-    benchmark:
-        f"results/{run.run}/benchmarks/calibration.tsv"
-    threads: CORES
-    resources:
-        **needs(),
-    params:
-        made_from=of_stage("calibration"),
-    message:
-        "Differentiate the phase over the diameter at a fixed focus and gap"
-    script:
-        "workflow/scripts/calibration.py"
-
-
-rule expansion:
-    input:
-        # without a series the job says so at once, and nothing is calibrated for it
-        series=SERIES,
-        calibration=f"results/{run.run}/calibration.nc" if SERIES else [],
-    output:
-        expansion=update(expand("results/{run}/expansion.nc", run=run.run)),
-        figures=update(
-            expand("results/{run}/figures/expansion.{form}", run=run.run, form=("png", "svg"))
-        ),
-    log:
-        f"results/{run.run}/logs/expansion.log",
-    benchmark:
-        f"results/{run.run}/benchmarks/expansion.tsv"
-    resources:
-        **needs(),
-    params:
-        made_from=of_stage("expansion"),
-    message:
-        "Turn a measured series of phases into nanometres"
-    script:
-        "workflow/scripts/expansion.py"
-
-
-rule action_potential:
-    input:
-        focus_law=LAW,
-        calibration=f"results/{run.run}/calibration.nc",
-    output:
-        action_potential=update(expand("results/{run}/action_potential.nc", run=run.run)),
-        figures=update(
-            expand(
-                "results/{run}/figures/action_potential.{form}",
-                run=run.run,
-                form=("png", "svg"),
-            )
-        ),
-    log:
-        f"results/{run.run}/logs/action_potential.log",
-    benchmark:
-        f"results/{run.run}/benchmarks/action_potential.tsv"
-    threads: CORES
-    resources:
-        **needs(),
-    params:
-        made_from=of_stage("action_potential"),
-    message:
-        "Simulate an action potential and recover it"
-    script:
-        "workflow/scripts/action_potential.py"
+        "workflow/scripts/job.py"
 
 
 rule archive:
@@ -501,16 +244,16 @@ rule archive:
         BESIDE,
         lock_file() or [],
     output:
-        update(expand("results/{run}/{run}.zip", run=run.run)),
+        update(f"{FOLDER}/{run.run}.zip"),
     log:
-        f"results/{run.run}/logs/archive.log",
+        f"{FOLDER}/logs/archive.log",
     benchmark:
-        f"results/{run.run}/benchmarks/archive.tsv"
+        f"{FOLDER}/benchmarks/archive.tsv"
     params:
         # it holds the whole config but for what no result depends on, and maybe a day
-        made_from=made_from("archive", "archive", *run.to_record()),
+        made_from=made_from(source_digest("octsim.archive.pack"), "archive", *run.to_record()),
         day=os.environ.get("SOURCE_DATE_EPOCH", ""),
     message:
         "Pack the run for a data repository"
     script:
-        "workflow/scripts/archive.py"
+        "workflow/scripts/job.py"

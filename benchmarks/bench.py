@@ -24,8 +24,8 @@ import octsim
 from octsim.base.threads import each
 from octsim.datasets.files import write
 from octsim.instrument.build import detector_of, scene_of
-from octsim.instrument.cache import opened
 from octsim.instrument.instrument import Instrument
+from octsim.instrument.point_store import PointStore
 from octsim.instrument.points import Points
 from octsim.optics.beam import vogel_beam
 from octsim.schemes.field_sum import intensity
@@ -124,11 +124,10 @@ def spectrum_sum() -> tuple[float, float]:
 def point_from_cache() -> float:
     """Measure what a point from the cache takes, over tracing it."""
     config = octsim.load_config()
-    with tempfile.TemporaryDirectory() as folder, opened(Path(folder) / "points", 1) as cache:
-        points = Points(cache)
+    with tempfile.TemporaryDirectory() as folder:
+        points = Points(PointStore(Path(folder), 1))
         kept, traced = Instrument(config, points).light, Instrument(config).light
         kept(1.4, 0.876)
-        points.keep()
         works: dict[str, Work] = {
             "kept": partial(kept, 1.4, 0.876), "traced": partial(traced, 1.4, 0.876),
         }  # fmt: skip

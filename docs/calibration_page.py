@@ -9,8 +9,8 @@ from markdown import table
 from octsim.config.models import Config
 from octsim.studies.calibration.expansion import LARGEST, expansion, sensitivity_at
 from octsim.studies.calibration.round_trips import REST, TRIALS
-from octsim.studies.calibration.study import INDICES, RAYS
-from octsim.studies.calibration.tolerances import PARAMETERS
+from octsim.studies.calibration.study import RAYS
+from octsim.studies.calibration.tolerances import INDICES, PARAMETERS
 
 SHOWN = (1.0, 1.2, 1.4, 1.6, 1.8, 2.0)
 EXAMPLE = (0.011, 1.4)  # rad, µm

@@ -16,9 +16,10 @@ from pydantic import BaseModel
 from spike_page import spike_page
 
 import octsim
+from octsim.config.derive import reference
 from octsim.config.models import Config
 from octsim.instrument.build import detector_of
-from octsim.studies.tradeoff.settings import CONVERGED_SAMPLES, FINER, reference
+from octsim.studies.tradeoff.settings import CONVERGED_SAMPLES, FINER
 
 DOCS = Path(__file__).parent
 RESULTS = DOCS.parent / "results" / "thesis"

@@ -1,1 +1,1 @@
-"""Runs found, compared, packed, verified."""
+"""Runs found, compared, packed, verified, reproduced."""

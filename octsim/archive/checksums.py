@@ -2,41 +2,33 @@
 
 import hashlib
 import re
-from collections.abc import Iterable, Mapping
-from pathlib import Path
+from collections.abc import Mapping
+from typing import IO
 
 from octsim.archive.safe_names import require_plain
 from octsim.base.errors import ArchiveError
 
 SUMS = "SHA256SUMS"
 LARGEST = 4_000_000
-"""Bytes of a sums file; that of a run has some thousand."""
-_PIECE = 1 << 20
+"""Bytes of a sums file, or of a zip's directory; those of a run have some thousand."""
+DAMAGED = "damaged"
+"""Stands for the digest of what is not whole, or no plain file."""
 _LINE = re.compile(r"([0-9a-f]{64})  ([^\n]+)")
 
 
-def pieces_of(file: Path) -> Iterable[bytes]:
-    """Give what a file holds, piece by piece."""
-    with file.open("rb") as stream:
-        while piece := stream.read(_PIECE):
-            yield piece
+def digest(stream: IO[bytes]) -> str:
+    """Return the SHA-256 of what a stream holds, in lower-case hexadecimal."""
+    # a stream that is open for bytes can read into a buffer, which its type does not say
+    return hashlib.file_digest(stream, "sha256").hexdigest()  # type: ignore[arg-type]
 
 
-def digest(pieces: Iterable[bytes]) -> str:
-    """Give the SHA-256 of bytes that come in pieces, in lower-case hexadecimal."""
-    found = hashlib.sha256()
-    for piece in pieces:
-        found.update(piece)
-    return found.hexdigest()
-
-
-def written(digests: Mapping[str, str]) -> bytes:
-    """Write a sums file: a line for each name, in alphabetical order."""
+def format_sums(digests: Mapping[str, str]) -> bytes:
+    """Return a sums file: a line for each name, in alphabetical order."""
     return "".join(f"{digests[name]}  {name}\n" for name in sorted(digests)).encode("ascii")
 
 
-def parsed(data: bytes) -> dict[str, str]:
-    """Read a sums file; only what `written` writes is one.
+def parse_sums(data: bytes) -> dict[str, str]:
+    """Return the digests by name of a sums file; only what `format_sums` returns is one.
 
     Raises
     ------
@@ -47,31 +39,30 @@ def parsed(data: bytes) -> dict[str, str]:
         lines = data.decode("ascii").split("\n")
     except UnicodeDecodeError:
         raise ArchiveError(f"{SUMS} is not text of digests and names") from None
-    found: list[tuple[str, str]] = []
-    for number, line in enumerate(lines[:-1], 1):
-        match = _LINE.fullmatch(line)
-        if not match:
-            raise ArchiveError(f"{SUMS}, line {number}: not a digest and a name")
-        found.append((match[2], match[1]))
+    matches = [_LINE.fullmatch(line) for line in lines[:-1]]
+    pairs = [(match[2], match[1]) for match in matches if match]
+    if len(pairs) < len(matches):
+        number = matches.index(None) + 1
+        raise ArchiveError(f"{SUMS}, line {number}: not a digest and a name")
     try:
-        require_plain(name for name, _ in found)
+        require_plain(name for name, _ in pairs)
     except ArchiveError as error:
         raise ArchiveError(f"{SUMS} {error}") from None
-    digests = dict(found)
-    if written(digests) != data or SUMS in digests:
+    digests = dict(pairs)
+    if format_sums(digests) != data or SUMS in digests:
         raise ArchiveError(f"{SUMS} is not as octsim writes it: sorted, whole, without itself")
     return digests
 
 
-def differences(listed: Mapping[str, str], found: Mapping[str, str]) -> list[str]:
-    """Say which files are not as a sums file lists them, one a line.
+def differences(listed: Mapping[str, str], present: Mapping[str, str]) -> list[str]:
+    """Return which files are not as a sums file lists them, a line each.
 
     Parameters
     ----------
-    listed, found : mapping
-        Digest by name; `found` without the sums file itself.
+    listed, present : mapping
+        Digest by name; `present` without the sums file itself.
     """
-    said = {name: "missing" for name in listed if name not in found}
-    said |= {name: "additional" for name in found if name not in listed}
-    said |= {n: "changed" for n, one in listed.items() if found.get(n, one) != one}
-    return [f"{name}: {what}" for name, what in sorted(said.items())]
+    problems = {name: "missing" for name in listed if name not in present}
+    problems |= {name: "additional" for name in present if name not in listed}
+    problems |= {n: "changed" for n, one in listed.items() if present.get(n, one) != one}
+    return [f"{name}: {what}" for name, what in sorted(problems.items())]

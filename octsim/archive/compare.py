@@ -8,16 +8,18 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from octsim.archive.compare_conditions import TOLERANCE, Condition, condition, same_environment
 from octsim.archive.compare_origins import Change, config_changes, version_changes
 from octsim.archive.compare_points import Common, blocks, common_points
-from octsim.archive.compare_values import Deviation, Kind, deviation, kind_of
+from octsim.archive.compare_values import UNKNOWN, Deviation, Kind, deviation, kind_of
 from octsim.archive.recorded import Recorded, recorded
 from octsim.base.errors import DatasetError
 from octsim.base.files import reason
 from octsim.datasets.files import opened
 
-TOLERANCE = 1e-12
-"""Relative difference up to which numbers count as the same."""
+ADDED = frozenset({"phase_status"})
+"""Variables that files of 0.1.0 lack, and that say of others where they hold nothing. Rounding
+decides at the limit, so that they are judged within one environment alone."""
 SCALARS: Mapping[str, tuple[str, ...]] = {
     "focus_law": ("slope", "intercept"),
     "phase_slope": (
@@ -34,7 +36,7 @@ SCALARS: Mapping[str, tuple[str, ...]] = {
 """What a run comes to, by stage."""
 
 
-class VariableContrast(NamedTuple):
+class VariableComparison(NamedTuple):
     """A variable of a dataset in two runs."""
 
     name: str
@@ -42,14 +44,16 @@ class VariableContrast(NamedTuple):
     deviation: Deviation
     unlike: str = ""
     """Why its values can't be compared, if they can't."""
+    allowed: float = 0.0
+    """Relative difference that its condition allows, where another environment made it."""
 
     def differs(self, tolerance: float) -> bool:
-        """Tell whether it is another than in the other run; what is measured never is."""
+        """Return whether it is another than in the other run; what is measured never is."""
         if self.kind is Kind.MEASURED:
             return False
-        found = self.deviation
-        beyond = not found.relative <= tolerance
-        return bool(self.unlike or beyond or found.misplaced or found.unequal)
+        apart = self.deviation
+        beyond = not apart.relative <= max(tolerance, self.allowed)
+        return bool(self.unlike or beyond or apart.misplaced or apart.unequal)
 
 
 class Unshared(NamedTuple):
@@ -60,11 +64,11 @@ class Unshared(NamedTuple):
     sizes: tuple[int, int]
 
 
-class DatasetContrast(NamedTuple):
+class DatasetComparison(NamedTuple):
     """A stage's dataset in two runs."""
 
     stage: str
-    variables: tuple[VariableContrast, ...]
+    variables: tuple[VariableComparison, ...]
     """Those that both have."""
     missing: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
     """Variables that the first run, and that the second run lacks."""
@@ -73,7 +77,7 @@ class DatasetContrast(NamedTuple):
     """Number of shared points that have not as many rays, which are not compared."""
 
     def differs(self, tolerance: float) -> bool:
-        """Tell whether it is another than in the other run."""
+        """Return whether it is another than in the other run."""
         apart = any(self.missing) or self.unshared or self.uneven
         return bool(apart) or any(one.differs(tolerance) for one in self.variables)
 
@@ -88,7 +92,7 @@ class Scalar(NamedTuple):
     second: float
 
 
-class Contrast(NamedTuple):
+class Comparison(NamedTuple):
     """Two runs side by side."""
 
     names: tuple[str, str]
@@ -98,7 +102,7 @@ class Contrast(NamedTuple):
     tolerance: float
     config: tuple[Change, ...]
     versions: tuple[Change, ...]
-    datasets: tuple[DatasetContrast, ...]
+    datasets: tuple[DatasetComparison, ...]
     """Those that both have."""
     missing: tuple[tuple[str, ...], tuple[str, ...]]
     """Stages whose dataset the first run, and the second run lacks."""
@@ -113,19 +117,21 @@ class Contrast(NamedTuple):
         return any(self.missing) or any(one.differs(self.tolerance) for one in self.datasets)
 
 
-def compare(first: str | Path, second: str | Path, tolerance: float = TOLERANCE) -> Contrast:
+def compare(first: str | Path, second: str | Path, tolerance: float | None = None) -> Comparison:
     """Compare two runs variable by variable, on the points that they share.
 
     Parameters
     ----------
     first, second : path
         A run's folder as ``results/thesis``, or the file of one of its datasets.
-    tolerance : float
-        Largest relative difference, max |a − b| / max |b| over a variable, of what is the same.
+    tolerance : float, optional
+        Largest relative difference, max |a − b| / max |b| over a variable, of what is the same. If
+        none is given, `TOLERANCE` where both were made in one environment, else what the condition
+        of each variable allows.
 
     Returns
     -------
-    Contrast
+    Comparison
         What differs in config, versions and numbers.
 
     Raises
@@ -134,27 +140,31 @@ def compare(first: str | Path, second: str | Path, tolerance: float = TOLERANCE)
         If one of them can't be read, or they have no dataset in common.
     """
     with recorded(Path(first)) as one, recorded(Path(second)) as other:
-        return contrast(one, other, tolerance)
+        return compare_recorded(one, other, tolerance)
 
 
-def contrast(first: Recorded, second: Recorded, tolerance: float = TOLERANCE) -> Contrast:
+def compare_recorded(
+    first: Recorded, second: Recorded, tolerance: float | None = None
+) -> Comparison:
     """Compare two runs that are at hand; see `compare`."""
     shared = [stage for stage in first.datasets if stage in second.datasets]
     if not shared:
         held = " and ".join(", ".join(one.datasets) for one in (first, second))
         raise DatasetError(f"{first.name}, {second.name}: no dataset in common ({held})")
-    found, scalars = [], []
+    compared, scalars = [], []
     for stage in shared:
         with _both(stage, first, second) as (one, other):
-            found.append(_dataset(stage, one, other))
+            by_condition = tolerance is None and not same_environment(one, other)
+            conditioned = condition(other, stage, second.config) if by_condition else None
+            compared.append(_dataset(stage, one, other, conditioned))
             scalars += _scalars(stage, one, other)
-    return Contrast(
+    return Comparison(
         names=(first.name, second.name),
         runs=(first.config.run, second.config.run),
-        tolerance=tolerance,
+        tolerance=TOLERANCE if tolerance is None else tolerance,
         config=config_changes(first.config, second.config),
         versions=version_changes(first.datasets, second.datasets),
-        datasets=tuple(found),
+        datasets=tuple(compared),
         missing=(_lacking(first, second), _lacking(second, first)),
         scalars=tuple(scalars),
     )
@@ -176,15 +186,20 @@ def _both(stage: str, first: Recorded, second: Recorded) -> Iterator[tuple[xr.Da
             raise DatasetError(f"{which}: can't be read ({reason(error)})") from None
 
 
-def _dataset(stage: str, first: xr.Dataset, second: xr.Dataset) -> DatasetContrast:
+def _dataset(
+    stage: str, first: xr.Dataset, second: xr.Dataset, conditioned: Condition | None
+) -> DatasetComparison:
     names = [str(name) for name in first.variables]
     common, uneven = common_points(first, second)
-    return DatasetContrast(
+    compared = [_variable(n, first, second, common) for n in names if n in second.variables]
+    if conditioned is not None:
+        compared = [_allowed(one, second, conditioned) for one in compared]
+    return DatasetComparison(
         stage,
-        tuple(_variable(n, first, second, common) for n in names if n in second.variables),
+        tuple(compared),
         (
-            tuple(str(name) for name in second.variables if name not in first.variables),
-            tuple(name for name in names if name not in second.variables),
+            tuple(str(n) for n in second.variables if n not in first.variables and n not in ADDED),
+            tuple(n for n in names if n not in second.variables and n not in ADDED),
         ),
         tuple(
             Unshared(dimension, points.first.size, points.sizes)
@@ -195,19 +210,30 @@ def _dataset(stage: str, first: xr.Dataset, second: xr.Dataset) -> DatasetContra
     )
 
 
+def _allowed(one: VariableComparison, dataset: xr.Dataset, by: Condition) -> VariableComparison:
+    """Judge a variable as its condition allows."""
+    if one.name in ADDED:
+        return one._replace(kind=Kind.MEASURED)
+    if one.kind not in (Kind.NUMBER, Kind.ANGLE) or one.unlike:
+        return one
+    units = str(dataset[one.name].attrs.get("units", "1"))
+    return one._replace(allowed=by.tolerance(one.name, units, one.deviation.scale))
+
+
 def _variable(
     name: str, first: xr.Dataset, second: xr.Dataset, common: Mapping[str, Common]
-) -> VariableContrast:
+) -> VariableComparison:
     one, other = first.variables[name], second.variables[name]
     kind = kind_of(name, one.dtype, name in first.coords or name in second.coords)
     unlike = _unlike(one, other, common)
     if unlike or kind is Kind.MEASURED:
-        return VariableContrast(name, kind, Deviation(), unlike)
-    return VariableContrast(name, kind, deviation(blocks(one, other, common), kind))
+        return VariableComparison(name, kind, Deviation(), unlike)
+    apart = deviation(blocks(one, other, common), kind, name in UNKNOWN)
+    return VariableComparison(name, kind, apart)
 
 
 def _unlike(one: xr.Variable, other: xr.Variable, common: Mapping[str, Common]) -> str:
-    """Say why two variables' values can't be compared, if they can't."""
+    """Return why two variables' values can't be compared, if they can't."""
     if one.dims != other.dims:
         return f"dimensions {_listed(one)} -> {_listed(other)}"
     types = _type(one.dtype), _type(other.dtype)
@@ -231,7 +257,7 @@ def _listed(variable: xr.Variable) -> str:
 
 
 def _scalars(stage: str, first: xr.Dataset, second: xr.Dataset) -> list[Scalar]:
-    """Give what both runs come to; of a grid nothing is one number."""
+    """Return what both runs come to; of a grid nothing is one number."""
     there = [
         name
         for name in SCALARS.get(stage, ())

@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
+from octsim.archive.origin import origin_of
 from octsim.config.grid import as_text
 from octsim.config.models import Config
-from octsim.datasets.versions import printable, recorded_environment
 
 NOT_RECORDED = "not recorded"
 
@@ -22,7 +22,7 @@ class Change(NamedTuple):
 
 
 def config_changes(first: Config, second: Config) -> tuple[Change, ...]:
-    """Give the dotted keys in which two configs differ, but for those that no result depends on.
+    """Return the dotted keys in which two configs differ, but for those that no result depends on.
 
     Ranges are told apart by their ends and their number; lengths have their unit.
     """
@@ -41,7 +41,7 @@ def _changes(one: Mapping[str, Any], other: Mapping[str, Any], above: str = "") 
 
 
 def version_changes(first: Mapping[str, Path], second: Mapping[str, Path]) -> tuple[Change, ...]:
-    """Give what datasets that are in both runs were not computed with alike.
+    """Return what datasets that are in both runs were not computed with alike.
 
     That is the version of octsim, the schema of the file, the digest of each dataset's sources, and
     each library, processor or system of the recorded environment. What differs in some of the
@@ -53,7 +53,7 @@ def version_changes(first: Mapping[str, Path], second: Mapping[str, Path]) -> tu
         Files by stage.
     """
     stages = [stage for stage in first if stage in second]
-    found: dict[Change, list[str]] = {}
+    stages_of: dict[Change, list[str]] = {}
     for stage in stages:
         one, other = (_versions(stage, files[stage]) for files in (first, second))
         if not (one.keys() & _LIBRARIES and other.keys() & _LIBRARIES):
@@ -61,12 +61,12 @@ def version_changes(first: Mapping[str, Path], second: Mapping[str, Path]) -> tu
         for key in dict.fromkeys((*one, *other)):
             change = Change(key, one.get(key, NOT_RECORDED), other.get(key, NOT_RECORDED))
             if change.first != change.second:
-                found.setdefault(change, []).append(stage)
+                stages_of.setdefault(change, []).append(stage)
     return tuple(
         change
         if change.what.startswith(_SOURCES) or of == stages
         else change._replace(what=f"{change.what} ({', '.join(of)})")
-        for change, of in found.items()
+        for change, of in stages_of.items()
     )
 
 
@@ -79,14 +79,13 @@ _OF_FILE = ("octsim", "schema")
 def _versions(stage: str, file: Path) -> dict[str, str]:
     # as it stands in the file, and not as it is read
     with xr.open_dataset(file, engine="netcdf4", decode_cf=False) as dataset:
-        attributes = dataset.attrs
-    found = {
-        "octsim": attributes.get("octsim_version", NOT_RECORDED),
-        "schema": attributes.get("schema_version", 0),
-        f"{_SOURCES}{stage}": attributes.get("source_digest", NOT_RECORDED),
+        origin = origin_of(dataset.attrs)
+    own = {
+        "octsim": origin.octsim_version or NOT_RECORDED,
+        "schema": str(origin.schema_version),
+        f"{_SOURCES}{stage}": origin.source_digest or NOT_RECORDED,
     }
-    libraries = recorded_environment(attributes) or {}
-    return {name: printable(version) for name, version in found.items()} | libraries
+    return own | dict(origin.environment or {})
 
 
 def _joined(versions: Mapping[str, str]) -> dict[str, str]:

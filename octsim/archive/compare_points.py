@@ -52,7 +52,7 @@ def common_points(first: xr.Dataset, second: xr.Dataset) -> tuple[dict[str, Comm
     if first[RAGGED].dims != second[RAGGED].dims:  # one is of a grid: no ray has its like
         none = np.empty(0, np.int64)
         return common | {RAY: Common(none, none, common[RAY].sizes)}, 0
-    rays, uneven = _shared_rays(first, second, common)
+    rays, uneven = _common_rays(first, second, common)
     return common | {RAY: rays}, uneven
 
 
@@ -60,7 +60,7 @@ Labels = tuple[tuple[str, ...], list[tuple[Any, ...]]]
 
 
 def _labels(dataset: xr.Dataset, dimension: str) -> Labels | None:
-    """Give the names and values that tell positions along a dimension apart, if there are any."""
+    """Return the names and values that tell positions along a dimension apart, if there are any."""
     named = [dimension] if dimension in dataset.indexes else []
     named = named or sorted(
         str(name)
@@ -81,7 +81,7 @@ def _matched(one: Labels | None, other: Labels | None, size: int, other_size: in
     return Common(first, second, (size, other_size))
 
 
-def _shared_rays(
+def _common_rays(
     first: xr.Dataset, second: xr.Dataset, common: Mapping[str, Common]
 ) -> tuple[Common, int]:
     counts, starts = [], []

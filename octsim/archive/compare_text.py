@@ -2,37 +2,44 @@
 
 from collections.abc import Iterable, Iterator
 
-from octsim.archive.compare import Contrast, DatasetContrast, Scalar, VariableContrast
+from octsim.archive.compare import Comparison, DatasetComparison, Scalar, VariableComparison
 from octsim.archive.compare_origins import Change
 from octsim.archive.compare_values import Kind
 
 _SIDES = ("A", "B")
 
 
-def lines(found: Contrast) -> Iterator[str]:
-    """Give a comparison line by line: config, versions, numbers, what the runs come to."""
-    for side, name, run in zip(_SIDES, found.names, found.runs, strict=True):
+def lines(comparison: Comparison) -> Iterator[str]:
+    """Return a comparison line by line: config, versions, numbers, what the runs come to."""
+    for side, name, run in zip(_SIDES, comparison.names, comparison.runs, strict=True):
         yield f"{side}: {name} (run {run})"
-    yield from ("", "config, A -> B", *_changes(found.config))
-    yield from ("", "versions, A -> B", *_changes(found.versions))
+    yield from ("", "config, A -> B", *_changes(comparison.config))
+    yield from ("", "versions, A -> B", *_changes(comparison.versions))
     yield from (
         "",
-        f"numbers, the largest relative difference; * differs (beyond {found.tolerance:g})",
+        f"numbers, the largest relative difference; * differs (beyond {comparison.tolerance:g})",
+        *_conditions(comparison),
     )
-    for side, stages in zip(_SIDES, found.missing, strict=True):
+    for side, stages in zip(_SIDES, comparison.missing, strict=True):
         yield from (f"* {stage}.nc: missing in {side}" for stage in stages)
-    for dataset in found.datasets:
-        yield from _dataset(dataset, found.tolerance)
-    if found.scalars:
-        yield from ("", *_table(found.scalars))
-    yield from ("", _verdict(found))
+    for dataset in comparison.datasets:
+        yield from _dataset(dataset, comparison.tolerance)
+    if comparison.scalars:
+        yield from ("", *_table(comparison.scalars))
+    yield from ("", _verdict(comparison))
+
+
+def _conditions(comparison: Comparison) -> list[str]:
+    if not any(one.allowed for dataset in comparison.datasets for one in dataset.variables):
+        return []
+    return ["made in another environment: * differs beyond the tolerance that a line tells"]
 
 
 def _changes(changes: tuple[Change, ...]) -> Iterable[str]:
     return [f"  {what}: {one} -> {other}" for what, one, other in changes] or ["  none"]
 
 
-def _dataset(dataset: DatasetContrast, tolerance: float) -> Iterator[str]:
+def _dataset(dataset: DatasetComparison, tolerance: float) -> Iterator[str]:
     yield f"  {dataset.stage}.nc"
     for dimension, common, (one, other) in dataset.unshared:
         yield f"*   {dimension}: compared at {common} of {one} (A) and {other} (B)"
@@ -46,17 +53,23 @@ def _dataset(dataset: DatasetContrast, tolerance: float) -> Iterator[str]:
         yield f"{mark}   {variable.name:{width}}  {_variable(variable)}"
 
 
-def _variable(variable: VariableContrast) -> str:
-    found = variable.deviation
+def _variable(variable: VariableComparison) -> str:
+    apart = variable.deviation
     if variable.kind is Kind.MEASURED:
         return "measured, not judged"
     if variable.unlike:
         return variable.unlike
     if variable.kind is Kind.EXACT:
-        return f"{found.unequal} of {found.values} not equal" if found.unequal else "equal"
-    said = f"{found.relative:.2e}" if found.relative else "0"
-    elsewhere = f", NaN at {found.misplaced} of {found.values} places in one alone"
-    return said + (elsewhere if found.misplaced else "")
+        return f"{apart.unequal} of {apart.values} not equal" if apart.unequal else "equal"
+    text = f"{apart.relative:.2e}" if apart.relative else "0"
+    elsewhere = f", NaN at {apart.misplaced} of {apart.values} places in one alone"
+    unknown = f", {apart.unknown} of {apart.values} left out: rounding alone in one"
+    return (
+        text
+        + (f" (tolerance {variable.allowed:.0e})" if variable.allowed else "")
+        + (elsewhere if apart.misplaced else "")
+        + (unknown if apart.unknown else "")
+    )
 
 
 def _table(scalars: tuple[Scalar, ...]) -> Iterator[str]:
@@ -76,14 +89,17 @@ def _table(scalars: tuple[Scalar, ...]) -> Iterator[str]:
         yield f"{name:{widths[0]}}  {'  '.join(numbers)}"
 
 
-def _verdict(found: Contrast) -> str:
-    if not found.differs:
-        return f"the same: every number within {found.tolerance:g}"
+def _verdict(comparison: Comparison) -> str:
+    if not comparison.differs:
+        conditioned = bool(_conditions(comparison))
+        return "the same: every number within " + (
+            "its tolerance" if conditioned else f"{comparison.tolerance:g}"
+        )
     variables = [
         f"{dataset.stage}.{variable.name}"
-        for dataset in found.datasets
+        for dataset in comparison.datasets
         for variable in dataset.variables
-        if variable.differs(found.tolerance)
+        if variable.differs(comparison.tolerance)
     ]
     what = f"{len(variables)} variables" if len(variables) != 1 else variables[0]
     return f"different: {what}" if variables else "different: not all is in both"

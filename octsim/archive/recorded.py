@@ -5,13 +5,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from octsim.archive.run_folder import run_in
+from octsim.archive.run_folder import run_in, stage_and_config
 from octsim.archive.verify import unpacked
 from octsim.base.errors import DatasetError
 from octsim.config.models import Config
-from octsim.datasets.catalog import keys_behind
-from octsim.datasets.files import opened
-from octsim.datasets.versions import recorded_config
+from octsim.datasets.keys import keys_behind
 
 
 class Recorded(NamedTuple):
@@ -29,32 +27,28 @@ class Recorded(NamedTuple):
 
 @contextmanager
 def recorded(path: Path) -> Iterator[Recorded]:
-    """Give what stands at a path; an archive is unpacked for as long as it is looked at.
+    """Return what stands at a path; an archive is unpacked for as long as it is looked at.
 
     Raises
     ------
     ArchiveError, DatasetError
         If it is no run and no dataset, or one that can't be read.
     """
-    with located(path) as place:
+    with _located(path) as place:
         if place.is_dir():
             run = run_in(place)
-            found = Recorded(str(path), run.config, run.datasets, True)
+            yield Recorded(str(path), run.config, run.datasets, True)
         else:
-            with opened(place) as dataset:
-                config = Config.model_validate(recorded_config(dataset.attrs))
-                stage = str(dataset.attrs["stage"])
-            found = Recorded(str(path), config, {stage: place}, False)
-        for stage, file in found.datasets.items():
+            stage, config = stage_and_config(place)
             # whatever a file calls itself may become a file's name
-            if not keys_behind(stage, found.config):
-                raise DatasetError(f"{file}: of the stage {stage!r}, which this octsim lacks")
-        yield found
+            if not keys_behind(stage, config):
+                raise DatasetError(f"{place}: of the stage {stage!r}, which this octsim lacks")
+            yield Recorded(str(path), config, {stage: place}, False)
 
 
 @contextmanager
-def located(path: Path) -> Iterator[Path]:
-    """Give the folder that has a run's datasets, or the one dataset's file, that a path means.
+def _located(path: Path) -> Iterator[Path]:
+    """Return the folder that has a run's datasets, or the one dataset's file, that a path means.
 
     Raises
     ------

@@ -4,37 +4,23 @@ import datetime as dt
 import json
 import os
 from collections.abc import Mapping, Sequence
+from operator import attrgetter
 from typing import Any
 
 from octsim.archive.checksums import SUMS
-from octsim.archive.contents import CONFIG, Item, Made
-from octsim.base.errors import ArchiveError
+from octsim.archive.contents import CONFIG, ORCID, Item, description_of, origins_of, title_of
+from octsim.base.errors import ArchiveError, not_installed
 from octsim.config.archive import ArchiveConfig
+from octsim.config.models import Config
 
-METADATA = "ro-crate-metadata.json"
 _VERSION = "1.2"
 _EPOCH = "SOURCE_DATE_EPOCH"
 NO_DAY = "1980-01-01"
 """Of publication, where none is given: the day that the zip has of every file."""
-_DESCRIPTION = (
-    "Simulated optical coherence tomography of a neuron: by ray tracing, from a microscope "
-    "objective and a cylinder on a glass slide to the phase slope, the change of phase with "
-    "diameter."
-)
 
 
-def title_of(given: ArchiveConfig, run: str) -> str:
-    """Give the title of a run's archive."""
-    return given.title or f"octsim run {run}"
-
-
-def description_of(given: ArchiveConfig) -> str:
-    """Give the description of a run's archive."""
-    return given.description or _DESCRIPTION
-
-
-def day_of(given: ArchiveConfig) -> str:
-    """Give the day of publication; never that of the clock, so that archives are the same bytes.
+def _day_of(given: ArchiveConfig) -> str:
+    """Return the day of publication; never that of the clock, so that archives are the same bytes.
 
     Raises
     ------
@@ -52,73 +38,80 @@ def day_of(given: ArchiveConfig) -> str:
         ) from None
 
 
-def remarks(given: ArchiveConfig) -> list[str]:
-    """Say what a data repository will ask for, a line each."""
-    said = []
+def unanswered(given: ArchiveConfig) -> list[str]:
+    """Return what a data repository will ask for and is not given, a line each."""
+    lines = []
     if not given.date and not os.environ.get(_EPOCH):
-        said.append(f"archive.date: not given, so {NO_DAY} stands as the day of publication")
+        lines.append(f"archive.date: not given, so {NO_DAY} stands as the day of publication")
     if not given.creators:
-        said.append("archive.creators: not given, so the archive names nobody as who made the data")
-    return said
+        lines.append(
+            "archive.creators: not given, so the archive names nobody as who made the data"
+        )
+    return lines
 
 
 def metadata(
-    run: str,
-    given: ArchiveConfig,
-    items: Sequence[Item],
-    made: Mapping[str, Made],
-    measured: Mapping[str, tuple[int, str]],
+    config: Config, items: Sequence[Item], sizes: Mapping[str, int], digests: Mapping[str, str]
 ) -> bytes:
-    """Write the metadata of an archive.
+    """Return the metadata of an archive.
 
     Parameters
     ----------
-    run : str
-        Name of the run.
-    given : ArchiveConfig
-        What a user says of it.
+    config : Config
+        The config that is archived, with what a user says of the archive.
     items : sequence of Item
-        Files of the archive.
-    made : mapping
-        How each stage's dataset was made.
-    measured : mapping
-        Size in bytes and SHA-256 of each file.
+        Files of the archive, but for the metadata and the sums.
+    sizes, digests : mapping
+        Bytes, and SHA-256, by name.
+
+    Raises
+    ------
+    ArchiveError
+        If SOURCE_DATE_EPOCH is needed and is not a number of seconds.
+    OctsimError
+        If rocrate is not installed.
     """
-    from rocrate.model.contextentity import ContextEntity
-    from rocrate.model.softwareapplication import SoftwareApplication
-    from rocrate.rocrate import ROCrate
+    try:
+        from rocrate.model.contextentity import ContextEntity
+        from rocrate.model.softwareapplication import SoftwareApplication
+        from rocrate.rocrate import ROCrate
+    except ImportError:
+        raise not_installed("rocrate", "archive") from None
 
     crate = ROCrate(version=_VERSION)
     root = crate.root_dataset
-    root["name"], root["description"] = title_of(given, run), description_of(given)
-    root["datePublished"] = day_of(given)
+    given = config.archive
+    root["name"], root["description"] = title_of(config), description_of(given)
+    root["datePublished"] = _day_of(given)
     license_ = f"https://spdx.org/licenses/{given.license}"
     named = {"@type": "CreativeWork", "name": given.license, "identifier": given.license}
     root["license"] = crate.add(ContextEntity(crate, license_, named))
     if given.creators:
         root["creator"] = _creators(crate, given)
     files: dict[str, Any] = {}
-    for item in sorted(items, key=lambda item: item.name):
-        size, digest = measured[item.name]
-        said: dict[str, Any] = {
-            "name": item.about, "encodingFormat": item.form,
-            "contentSize": str(size), "sha256": digest,
-        }  # fmt: skip
+    for item in sorted(items, key=attrgetter("name")):
+        properties: dict[str, Any] = {
+            "name": item.about,
+            "encodingFormat": item.form,
+            "contentSize": str(sizes[item.name]),
+            "sha256": digests[item.name],
+        }
         if item.variables:
-            said["description"], said["variableMeasured"] = item.about, list(item.variables)
-        files[item.name] = crate.add_file(dest_path=item.name, properties=said)
+            properties |= {"description": item.about, "variableMeasured": list(item.variables)}
+        files[item.name] = crate.add_file(dest_path=item.name, properties=properties)
     for item in items:
         if item.stages:
             files[item.name]["isBasedOn"] = [files[f"{stage}.nc"] for stage in item.stages]
-    said = {"name": "SHA-256 of every file but itself", "encodingFormat": "text/plain"}
-    crate.add_file(dest_path=SUMS, properties=said)
-    given_to = [files[CONFIG]]
-    for version in sorted({one.octsim_version for one in made.values()}):
-        said = {"name": "octsim", "softwareVersion": version}
-        octsim = crate.add(SoftwareApplication(crate, f"#octsim-{version}", said))
-        results = [files[f"{stage}.nc"] for stage in made if made[stage].octsim_version == version]
-        said = {"name": f"octsim {version} computes the datasets of the run {run}"}
-        action = crate.add_action(octsim, f"#run-{version}", given_to, results, said)
+    sums = {"name": "SHA-256 of every file but itself", "encodingFormat": "text/plain"}
+    crate.add_file(dest_path=SUMS, properties=sums)
+    made_by: dict[str, list[Any]] = {}
+    for stage, origin in origins_of(items).items():
+        made_by.setdefault(origin.octsim_version, []).append(files[f"{stage}.nc"])
+    for version, datasets in sorted(made_by.items()):
+        program = {"name": "octsim", "softwareVersion": version}
+        octsim = crate.add(SoftwareApplication(crate, f"#octsim-{version}", program))
+        about = {"name": f"octsim {version} computes the datasets of the run {config.run}"}
+        action = crate.add_action(octsim, f"#run-{version}", [files[CONFIG]], datasets, about)
         action["actionStatus"] = {"@id": "http://schema.org/CompletedActionStatus"}
     graph = crate.metadata.generate()
     graph["@graph"].sort(key=lambda entity: str(entity["@id"]))
@@ -139,7 +132,7 @@ def _creators(crate: Any, given: ArchiveConfig) -> list[Any]:
     }
     people = []
     for number, one in enumerate(given.creators, 1):
-        identifier = f"https://orcid.org/{one.orcid}" if one.orcid else f"#creator-{number}"
+        identifier = f"{ORCID}{one.orcid}" if one.orcid else f"#creator-{number}"
         person = crate.add(Person(crate, identifier, {"name": one.name}))
         if one.affiliation:
             person["affiliation"] = places[one.affiliation]

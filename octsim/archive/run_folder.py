@@ -1,14 +1,14 @@
 """A run that was made: its datasets and figures, and the config that all of them follow from."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
 from octsim.base.errors import DatasetError
 from octsim.config.models import Config
-from octsim.datasets.catalog import differing
+from octsim.datasets.catalog import STAGES, TARGETS
 from octsim.datasets.files import opened
-from octsim.datasets.gallery import STAGES, TARGETS
+from octsim.datasets.keys import differing
 from octsim.datasets.versions import recorded_config
 
 FIGURES = "figures"
@@ -27,7 +27,7 @@ class Run(NamedTuple):
 
 
 def run_in(folder: Path) -> Run:
-    """Give the run whose datasets stand in a folder; other files there are none of it.
+    """Return the run whose datasets stand in a folder; other files there are none of it.
 
     Parameters
     ----------
@@ -43,12 +43,22 @@ def run_in(folder: Path) -> Run:
     datasets = {stage: file for stage, file in known.items() if file.is_file()}
     if not datasets:
         raise DatasetError(f"{folder}: no datasets; give a folder as results/thesis")
-    configs: dict[str, Config] = {}
-    for stage, file in datasets.items():
-        with opened(file, stage) as dataset:
-            configs[stage] = Config.model_validate(recorded_config(dataset.attrs))
+    configs = {stage: stage_and_config(file, stage)[1] for stage, file in datasets.items()}
     figures = tuple(sorted(path for path in (folder / FIGURES).glob("*") if _is_plain(path)))
     return Run(_common(configs, datasets), datasets, figures)
+
+
+def stage_and_config(file: Path, stage: str | None = None) -> tuple[str, Config]:
+    """Return which stage a dataset says that it is of, and the config that it records.
+
+    Raises
+    ------
+    DatasetError
+        If it can't be read, or is not of the stage that is given.
+    """
+    with opened(file, stage) as dataset:
+        config = Config.model_validate(recorded_config(dataset.attrs))
+        return str(dataset.attrs["stage"]), config
 
 
 def _is_plain(path: Path) -> bool:
@@ -56,31 +66,26 @@ def _is_plain(path: Path) -> bool:
 
 
 def _common(configs: Mapping[str, Config], datasets: Mapping[str, Path]) -> Config:
-    """Give the config that every dataset can have been made from.
+    """Return the config that every dataset can have been made from.
 
     A key that a stage does not read may have been edited since it was made: then the dataset that
     was made last has the config of all.
     """
-    first: DatasetError | None = None
     # the end of the run, where it is there, has most likely been made last
-    for _, config in sorted(configs.items(), key=lambda one: one[0] != "phase_slope"):
-        differing = _differing(config, configs)
-        if not differing:
+    candidates = [configs[stage] for stage in sorted(configs, key=lambda one: one != "phase_slope")]
+    for config in candidates:
+        if not any(_conflicts(config, configs)):
             return config
-        stage, keys = next(iter(differing.items()))
-        first = first or DatasetError(
-            f"{datasets[stage]}: made from another config than the datasets beside it (its "
-            f"{', '.join(keys)} differ); run again to make it anew, or move it away"
-        )
-    assert first is not None
-    raise first
+    stage, keys = next(_conflicts(candidates[0], configs))
+    raise DatasetError(
+        f"{datasets[stage]}: made from another config than the datasets beside it (its "
+        f"{', '.join(keys)} differ); run again to make it anew, or move it away"
+    )
 
 
-def _differing(config: Config, configs: Mapping[str, Config]) -> dict[str, list[str]]:
-    """Give the stages that another config than this one made, with the keys that tell."""
-    found = {}
+def _conflicts(config: Config, configs: Mapping[str, Config]) -> Iterator[tuple[str, list[str]]]:
+    """Return the stages that another config than this one made, with the keys that tell."""
     for stage, other in configs.items():
-        differ = differing(stage, config, other.to_dict())
-        if differ or config.run != other.run:
-            found[stage] = differ or ["run"]
-    return found
+        keys = differing(stage, config, other.to_dict())
+        if keys or config.run != other.run:
+            yield stage, keys or ["run"]

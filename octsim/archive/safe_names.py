@@ -12,7 +12,7 @@ _DEEPEST = 8
 
 
 def is_plain(name: str) -> bool:
-    """Tell whether a name is a path below the folder that it is in, whatever the system.
+    """Return whether a name is a path below the folder that it is in, whatever the system.
 
     What is not listed here is none: no `..`, no `/` at the start, no backslash, drive letter,
     control character or letter that looks like another, no name that Windows keeps for a device.
@@ -56,6 +56,6 @@ def require_plain(names: Iterable[str]) -> None:
 
 
 def shown(name: str) -> str:
-    """Give a name as text that a terminal may print."""
+    """Return a name as text that a terminal may print."""
     text = ascii(name)
     return text if len(text) <= 80 else f"{text[:76]}...'"

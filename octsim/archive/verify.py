@@ -10,14 +10,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
-from octsim.archive import zip_file as zipped
-from octsim.archive.checksums import LARGEST, SUMS, differences, digest, parsed, pieces_of
+from octsim.archive.checksums import DAMAGED, LARGEST, SUMS, differences, digest, parse_sums
+from octsim.archive.zip_file import digests_in, is_canonical, safe_zip
 from octsim.base.errors import ArchiveError, FileError
 from octsim.base.files import reason, require_empty
 
 
 def problems(path: Path) -> list[str]:
-    """Say what of an archive is not as it was packed, a line each; nothing if all is.
+    """Return what of an archive is not as it was packed, a line each; none if all is.
 
     Parameters
     ----------
@@ -31,9 +31,9 @@ def problems(path: Path) -> list[str]:
     """
     try:
         if path.is_dir():
-            return _in_folder(path)
+            return _problems_in_folder(path)
         with path.open("rb") as stream:
-            return _in_zip(stream)
+            return problems_in_zip(stream)
     except ArchiveError as error:
         raise ArchiveError(f"{path}: {error}") from None
     except OSError as error:
@@ -48,9 +48,9 @@ def verify(path: Path) -> None:
     ArchiveError
         If it is not; with a line for each file that is missing, changed or additional.
     """
-    said = problems(path)
-    if said:
-        raise ArchiveError("\n".join(f"{path}: {line}" for line in said))
+    lines = problems(path)
+    if lines:
+        raise ArchiveError("\n".join(f"{path}: {line}" for line in lines))
 
 
 def unpack(file: Path, folder: Path) -> None:
@@ -80,8 +80,8 @@ def unpack(file: Path, folder: Path) -> None:
         # beside it first: what is killed or runs out of disk leaves the folder as it was
         with tempfile.TemporaryDirectory(prefix=f".{place.name}.", dir=place.parent) as name:
             beside = Path(name)
-            with file.open("rb") as stream:
-                zipped.extract(stream, beside)
+            with file.open("rb") as stream, safe_zip(stream) as archive:
+                archive.extractall(beside)
             verify(beside)  # what was written, not only what was read
             place.mkdir(exist_ok=True)
             for one in sorted(beside.iterdir()):
@@ -92,7 +92,7 @@ def unpack(file: Path, folder: Path) -> None:
 
 @contextmanager
 def unpacked(file: Path) -> Iterator[Path]:
-    """Give a temporary folder with what an archive holds, verified.
+    """Return a temporary folder with what an archive holds, verified.
 
     Raises
     ------
@@ -105,32 +105,36 @@ def unpacked(file: Path) -> Iterator[Path]:
         yield folder
 
 
-def _in_zip(stream: IO[bytes]) -> list[str]:
-    found = zipped.contents(stream)
-    if found.sums is None:
-        raise ArchiveError(f"holds no {SUMS}; not an archive of octsim")
-    if not found.sums_intact:
-        return [f"{SUMS}: changed"]
-    said = differences(parsed(found.sums), {k: v for k, v in found.digests.items() if k != SUMS})
-    if not said and not found.canonical:
-        said = ["its headers or its directory: changed"]
-    return said
+def problems_in_zip(stream: IO[bytes]) -> list[str]:
+    """Return what of a zip is not as it was packed; see `problems`."""
+    with safe_zip(stream) as archive:
+        present = digests_in(archive)
+        if SUMS not in present:
+            raise ArchiveError(f"holds no {SUMS}; not an archive of octsim")
+        if present.pop(SUMS) == DAMAGED:
+            return [f"{SUMS}: changed"]
+        lines = differences(parse_sums(archive.read(SUMS)), present)
+        if not lines and not is_canonical(archive, stream):
+            lines = ["its headers or its directory: changed"]
+        return lines
 
 
-def _in_folder(folder: Path) -> list[str]:
+def _problems_in_folder(folder: Path) -> list[str]:
     sums = folder / SUMS
     if not sums.is_file() or sums.is_symlink():
         raise ArchiveError(f"holds no {SUMS}; not an archive of octsim that was unpacked")
     if sums.stat().st_size > LARGEST:
         raise ArchiveError(f"its {SUMS} is larger than that of any archive")
-    listed = parsed(sums.read_bytes())
-    found: dict[str, str] = {}
+    listed = parse_sums(sums.read_bytes())
+    present: dict[str, str] = {}
     for above, folders, files in os.walk(folder):
         # what is no plain file is not opened: a link leads elsewhere, a pipe may have no end
         for name in (*files, *(one for one in folders if (Path(above) / one).is_symlink())):
             file = Path(above) / name
-            plain = file.is_file() and not file.is_symlink()
-            known = file.relative_to(folder).as_posix()
-            found[known] = digest(pieces_of(file)) if plain and known in listed else "not a file"
-    del found[SUMS]
-    return differences(listed, found)
+            path = file.relative_to(folder).as_posix()
+            present[path] = DAMAGED
+            if path in listed and file.is_file() and not file.is_symlink():
+                with file.open("rb") as stream:
+                    present[path] = digest(stream)
+    del present[SUMS]
+    return differences(listed, present)

@@ -24,13 +24,16 @@ def compiled(**options: Any) -> Callable[[Function], Function]:
 
     numba's own cache looks at the time of the function's file alone and would go on using old
     formulas from other files; here the cache's folder is named after the digest of all of them,
-    those of functions that it is closed over too.
+    those of functions that it is closed over too, and after the processor that NUMBA_CPU_NAME asks
+    for, if it does.
     Options are those of `numba.njit`.
     """
 
     def compile_(function: Function) -> Function:
-        folder = PACKAGE / "__pycache__" / f"numba-{source_digest(*_sources(function))}"
         settings: Any = numba.config
+        asked = f"-{settings.CPU_NAME}" if settings.CPU_NAME else ""
+        digest = source_digest(*_sources(function))
+        folder = PACKAGE / "__pycache__" / f"numba-{digest}{asked}"
         elsewhere, settings.CACHE_DIR = settings.CACHE_DIR, str(folder)
         try:
             dispatcher: Function = numba.njit(

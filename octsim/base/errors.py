@@ -13,6 +13,11 @@ class DatasetError(OctsimError):
     """A stored dataset is missing, damaged or not what it should be."""
 
 
+def not_installed(library: str, extra: str) -> OctsimError:
+    """Return the error of a library that is missing, as it is one of an extra of the package."""
+    return OctsimError(f"{library} is not installed; run: pip install 'octsim[{extra}]'")
+
+
 class OctsimWarning(UserWarning):
     """Something that a user should know but that stops nothing."""
 
@@ -22,7 +27,7 @@ class FileError(OctsimError):
 
 
 class CacheError(OctsimError):
-    """A file is no point cache, or not one that this octsim reads, or can't be cleared."""
+    """A folder is no point cache, or not one that this octsim reads, or can't be cleared."""
 
 
 class ArchiveError(OctsimError):

@@ -1,13 +1,16 @@
-"""What made a dataset: a digest of the sources that it stands on."""
+"""What made a dataset: a digest of its sources, and the environment that they ran in."""
 
 import ast
 import hashlib
-from collections.abc import Iterable, Iterator
+import platform
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1]
 """Folder of the package."""
+_COMPUTE = ("numpy", "scipy", "numba", "llvmlite", "xarray", "netCDF4")
 LOCK = "requirements.lock"
 """Pinned versions of what octsim needs, in a checkout."""
 
@@ -17,6 +20,29 @@ def lock_file() -> Path | None:
     checkout = PACKAGE.parent
     file = checkout / LOCK
     return file if file.is_file() and (checkout / "pyproject.toml").is_file() else None
+
+
+@cache
+def environment() -> Mapping[str, str]:
+    """Give the version of Python and of each library that the last bits of a result may hang on.
+
+    Returns
+    -------
+    mapping
+        Version by name; ``system`` and ``processor`` are those that numba compiles for.
+    """
+    # what traces nothing and writes nothing has no use for these
+    import llvmlite.binding
+    import netCDF4
+
+    return {
+        "python": platform.python_version(),
+        **{name: version(name) for name in _COMPUTE},
+        "netcdf-c": str(netCDF4.__netcdf4libversion__),
+        "hdf5": str(netCDF4.__hdf5libversion__),
+        "system": f"{platform.system()} {platform.machine()}",
+        "processor": str(llvmlite.binding.get_host_cpu_name()),
+    }
 
 
 def source_digest(*sources: str | Path, without: Iterable[str] = ()) -> str:

@@ -1,7 +1,4 @@
-"""`octsim archive`, `octsim verify` and `octsim unpack`: a run as one file, checked to the bit.
-
-What does the work is imported when it is asked for: the other commands need no dataset's library.
-"""
+"""`octsim archive`, `octsim verify` and `octsim unpack`: a run as one file, checked to the bit."""
 
 import sys
 from argparse import Namespace
@@ -21,21 +18,21 @@ def add(commands: Any) -> None:
         help="whose section archive has title, creators, license and date (default: that of the "
         "archive which is replaced, where there is one)",
     )
-    parser.set_defaults(do=archive, failed=1)
+    parser.set_defaults(do=run_archive, failed=1)
     purpose = "check that an archive is as it was packed, to the last bit"
     parser = commands.add_parser("verify", help=purpose, description=purpose)
     parser.add_argument("path", type=Path, help="a zip, or the folder that it was unpacked to")
-    parser.set_defaults(do=verified, failed=1)
+    parser.set_defaults(do=run_verify, failed=1)
     purpose = "verify an archive, then unpack it"
     parser = commands.add_parser("unpack", help=purpose, description=purpose)
     parser.add_argument("file", type=Path, help="a zip")
     parser.add_argument("folder", type=Path, help="not there yet, or empty")
-    parser.set_defaults(do=unpacked, failed=1)
+    parser.set_defaults(do=run_unpack, failed=1)
 
 
-def archive(given: Namespace) -> int:
-    """Pack a run; say what a user should know of it on stderr."""
-    from octsim.archive.pack import pack, told_before
+def run_archive(given: Namespace) -> int:
+    """Pack a run; print what a user should know of it to stderr."""
+    from octsim.archive.pack import pack, packed_config
     from octsim.archive.run_folder import run_in
     from octsim.config.derive import merge
     from octsim.config.load import load_config, read_overlay
@@ -45,17 +42,18 @@ def archive(given: Namespace) -> int:
     run = run_in(folder).config
     named = given.file and given.file.expanduser()
     file = named or folder / f"{run.run}.zip"
-    overlay = read_overlay(given.config.expanduser()) if given.config else told_before(file)
-    said = load_config({key: part for key, part in overlay.items() if key == "archive"}).archive
-    data = merge(run.to_dict(), {"archive": said.model_dump(mode="json")})
-    packed = pack(folder, Config.model_validate(data), named)
+    overlay = read_overlay(given.config.expanduser()) if given.config else packed_config(file)
+    # nothing else of it, as the datasets follow from the run's own
+    section = load_config({key: data for key, data in overlay.items() if key == "archive"}).archive
+    config = merge(run.to_dict(), {"archive": section.model_dump(mode="json")})
+    packed = pack(folder, Config.model_validate(config), named)
     for remark in packed.remarks:
         print(f"octsim: warning: {remark}", file=sys.stderr)
     print(packed)
     return 0
 
 
-def verified(given: Namespace) -> int:
+def run_verify(given: Namespace) -> int:
     """Verify an archive."""
     from octsim.archive.verify import verify
 
@@ -65,7 +63,7 @@ def verified(given: Namespace) -> int:
     return 0
 
 
-def unpacked(given: Namespace) -> int:
+def run_unpack(given: Namespace) -> int:
     """Unpack an archive."""
     from octsim.archive.verify import unpack
 

@@ -5,11 +5,9 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from octsim.config.models import Cache
-from octsim.instrument.cache import clear, describe
-
-CACHE = Path(Cache().file)
-"""Where a checkout keeps its traced points."""
+CACHE = Path(".octsim/points")
+"""Where a checkout keeps its traced points: the default of the config's `cache.file`, of which it
+takes half a second to ask the config."""
 
 
 def add(commands: Any) -> None:
@@ -18,50 +16,53 @@ def add(commands: Any) -> None:
     actions = cache.add_subparsers(required=True, metavar="action")
     for name, do, purpose in (
         ("show", show_cache, "say how many points it holds, its size and its use"),
-        ("clear", clear_cache, "empty it, or replace a damaged one"),
+        ("clear", clear_cache, "empty it"),
     ):
         action = actions.add_parser(name, help=purpose, description=purpose)
         action.add_argument(
-            "--file", type=Path, default=CACHE, help="of the cache (default: %(default)s)"
+            "--file", type=Path, default=CACHE, help="its folder (default: %(default)s)"
         )
         action.set_defaults(do=do, failed=1)
 
 
 def show_cache(given: Namespace) -> int:
-    """Say what a cache holds, in a few lines."""
+    """Print what a cache holds, in a few lines."""
+    from octsim.instrument.point_folder import folder_of, old_cache, old_cache_remark
+    from octsim.instrument.point_store import describe
+
     file: Path = given.file.expanduser()
     held = describe(file)
     if held is None:
-        print(f"{file}: no cache yet")
-        return 0
-    of = f" of {held.allowed / 1e6:.6g} MB allowed" if held.allowed else ""
-    lines = [
-        f"{file}: point cache, version {held.version}",
-        f"points     {held.entries}",
-        f"size       {held.bytes / 1e6:.1f} MB{of}",
-    ]
-    if held.oldest is not None and held.newest is not None:
-        lines += [f"last used  {_when(held.newest)}", f"oldest use {_when(held.oldest)}"]
+        lines = [f"{file}: no cache yet"]
+    else:
+        of = f" of {held.allowed / 1e6:.6g} MB allowed" if held.allowed else ""
+        lines = [
+            f"{folder_of(file)}: point cache, version {held.version}",
+            f"points     {held.points}",
+            f"size       {held.bytes / 1e6:.1f} MB{of}",
+        ]
+        if held.oldest is not None and held.newest is not None:
+            lines += [f"last used  {_when(held.newest)}", f"oldest use {_when(held.oldest)}"]
+    if old := old_cache(file):
+        lines.append(old_cache_remark(old))
     print(*lines, sep="\n")
     return 0
 
 
 def clear_cache(given: Namespace) -> int:
-    """Empty a cache, and say how much of the disk that freed."""
+    """Empty a cache, and print how much of the disk that freed."""
+    from octsim.instrument.point_folder import folder_of, old_cache, old_cache_remark
+    from octsim.instrument.point_store import clear
+
     file: Path = given.file.expanduser()
-    if not file.exists():
-        print(f"{file}: no cache yet")
-        return 0
-    before = _size(file)
-    clear(file)
-    print(f"{file}: {max(before - _size(file), 0) / 1e6:.1f} MB freed")
+    freed = clear(file)
+    done = "no cache yet" if freed is None else f"{freed / 1e6:.1f} MB freed"
+    lines = [f"{folder_of(file)}: {done}"]
+    if old := old_cache(file):
+        lines.append(old_cache_remark(old))
+    print(*lines, sep="\n")
     return 0
 
 
-def _when(nanoseconds: int) -> str:
-    return time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(nanoseconds // 1_000_000_000))
-
-
-def _size(file: Path) -> int:
-    log = file.with_name(file.name + "-wal")
-    return sum(part.stat().st_size for part in (file, log) if part.exists())
+def _when(seconds: float) -> str:
+    return time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(seconds))

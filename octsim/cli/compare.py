@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from octsim.base.errors import DatasetError
-from octsim.datasets.catalog import stage_axes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,10 +28,7 @@ def add(commands: Any) -> None:
         parser.add_argument(
             name, type=Path, help="a run's folder as results/thesis, its archive, or a dataset"
         )
-    parser.add_argument(
-        "--tolerance", type=tolerance, default=1e-12, metavar="NUMBER",
-        help="largest relative difference of what is the same (default: %(default)s)",
-    )  # fmt: skip
+    add_tolerance(parser)
     drawn = parser.add_mutually_exclusive_group()
     drawn.add_argument(
         "--figure", type=_figure, metavar="FILE",
@@ -40,10 +36,19 @@ def add(commands: Any) -> None:
         "(default: compare_<A>_<B>.png here, of runs that have one)",
     )  # fmt: skip
     drawn.add_argument("--no-figure", action="store_true", help="draw none")
-    parser.set_defaults(do=compare, failed=2)
+    parser.set_defaults(do=run_compare, failed=2)
 
 
-def tolerance(text: str) -> float:
+def add_tolerance(parser: argparse.ArgumentParser) -> None:
+    """Add the option of what counts as the same."""
+    parser.add_argument(
+        "--tolerance", type=_tolerance, metavar="NUMBER",
+        help="largest relative difference of what is the same (default: 1e-12, and of another "
+        "environment what the condition of each variable allows)",
+    )  # fmt: skip
+
+
+def _tolerance(text: str) -> float:
     """Read a tolerance: 0 or more."""
     value = float(text)
     if not (value >= 0 and math.isfinite(value)):
@@ -58,29 +63,30 @@ def _figure(text: str) -> Path:
     return path
 
 
-def compare(given: argparse.Namespace) -> int:
-    """Print what differs between two runs; give the exit status."""
-    # xarray and matplotlib are not for those who ask for the cache
-    from octsim.archive.compare import contrast
+def run_compare(given: argparse.Namespace) -> int:
+    """Print what differs between two runs; return the exit status."""
+    from octsim.archive.compare import compare_recorded
     from octsim.archive.compare_text import lines
     from octsim.archive.recorded import recorded
-    from octsim.figures.compare import figure_contrast
+    from octsim.figures.compare import figure_compare
     from octsim.figures.style import look, save
 
     with recorded(given.A) as one, recorded(given.B) as other:
         figure = None if given.no_figure else given.figure or _usual(one, other)
         slopes = _slopes(one, other) if figure else None  # a figure that can't be is said at once
-        found = contrast(one, other, given.tolerance)
-        print(*lines(found), sep="\n")
+        result = compare_recorded(one, other, given.tolerance)
+        print(*lines(result), sep="\n")
         if figure and slopes:
             with look():
-                save(figure_contrast(slopes, _named(one, other)), figure)
+                save(figure_compare(slopes, _named(one, other)), figure)
             print(f"figure: {figure}")
-    return int(found.differs)
+    return int(result.differs)
 
 
 def _usual(first: "Recorded", second: "Recorded") -> Path | None:
-    """Give the file of a figure that was not asked for, if the two runs have one in common."""
+    """Return the file of a figure that was not asked for, if the two runs have one in common."""
+    from octsim.datasets.keys import stage_axes
+
     both = all(
         "phase_slope" in run.datasets and not stage_axes("phase_slope", run.config)
         for run in (first, second)
@@ -108,7 +114,7 @@ def _slopes(first: "Recorded", second: "Recorded") -> "tuple[xr.Dataset, xr.Data
 
 
 def _named(first: "Recorded", second: "Recorded") -> tuple[str, str]:
-    """Give names that tell two runs apart."""
+    """Return names that tell two runs apart."""
     if first.config.run != second.config.run:
         return first.config.run, second.config.run
     return f"{first.name} (A)", f"{second.name} (B)"

@@ -8,28 +8,26 @@ from collections.abc import Callable, Sequence
 from typing import NoReturn
 
 from octsim.base.errors import OctsimError
-from octsim.cli import archive as archive_command
-from octsim.cli import cache as cache_command
-from octsim.cli import compare as compare_command
+from octsim.cli import archive, cache, compare, reproduce
 
-PARTS = (archive_command, compare_command, cache_command)
-"""Modules that add commands of their own."""
+MODULES = (archive, compare, reproduce, cache)
+"""Each adds commands of its own, and imports what does their work when one is asked for."""
 
 
 class Parser(argparse.ArgumentParser):
-    """Says in one line what is wrong with the arguments."""
+    """Prints in one line what is wrong with the arguments."""
 
     def error(self, message: str) -> NoReturn:
-        """Say it, and where more is said."""
+        """Print it, and where more is said; exit with 2."""
         self.exit(2, f"{self.prog}: {message}; `{self.prog} --help` says what there is\n")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; give its exit status."""
+    """Run the command; return its exit status."""
     parser = Parser(prog="octsim", description="Ray tracing of OCT of a neuron.")
     commands = parser.add_subparsers(required=True, metavar="command")
-    for part in PARTS:
-        part.add(commands)
+    for module in MODULES:
+        module.add(commands)
     given = parser.parse_args(arguments)
     do: Callable[[Namespace], int] = given.do
     try:

@@ -1,8 +1,9 @@
 """What no single key can tell: configs that are impossible, and those that are likely not meant."""
 
+import itertools
+import math
 from collections.abc import Iterator
 
-import numpy as np
 from pydantic import BaseModel
 
 from octsim.base.errors import ConfigError
@@ -34,16 +35,17 @@ def highest_focus(config: Config) -> tuple[str, float]:
     """Give the key that asks for the highest focus known before a run, and that focus in µm."""
     law = config.focus_law
     # corners suffice: a product of two ranges is greatest at one
-    law_foci = np.outer(
-        [law.diameters.start, law.diameters.stop], [law.fraction.start, law.fraction.stop]
+    corners = itertools.product(
+        (law.diameters.start, law.diameters.stop), (law.fraction.start, law.fraction.stop)
     )
     foci = {
         "focus_scan.focus.stop": config.focus_scan.focus.stop,
-        "focus_law.fraction.stop": float(law_foci.max()),
+        "focus_law.fraction.stop": max(map(math.prod, corners)),
     }
     if isinstance(config.sweep.focus, FocusLine):
-        ends = np.array([config.sweep.diameters.start, config.sweep.diameters.stop])
-        foci["sweep.focus"] = float(config.sweep.focus.at(ends).max())
+        line, diameters = config.sweep.focus, config.sweep.diameters
+        ends = (diameters.start, diameters.stop)
+        foci["sweep.focus"] = max(map(line.at, ends))
     return max(foci.items(), key=lambda item: item[1])
 
 
@@ -151,7 +153,7 @@ def plain_remarks(config: Config) -> list[str]:
     said = list(_steep_remarks(config))
     band, diameters = config.spectrum.wavelength, config.sweep.diameters
     n_neuron = config.scene.refractive_index.neuron
-    k_min, k_max = 2 * np.pi / band.max, 2 * np.pi / band.min
+    k_min, k_max = 2 * math.pi / band.max, 2 * math.pi / band.min
     step = (diameters.stop - diameters.start) / (diameters.num - 1)
     largest = aliasing_step(n_neuron, k_min, k_max)
     if step > largest:
@@ -160,14 +162,14 @@ def plain_remarks(config: Config) -> list[str]:
             f"{largest:.6g} um, so the unwrapped phase is ambiguous and its slope can be wrong; "
             "raise sweep.diameters.num"
         )
-    oscillations = n_neuron * (k_max - k_min) / np.pi  # of cos(2ndk) over the band, per µm
+    oscillations = n_neuron * (k_max - k_min) / math.pi  # of cos(2ndk) over the band, per µm
     if oscillations * diameters.start < 1:
         said.append(
             f"sweep.diameters.start: {format_length(diameters.start)} is less than one oscillation "
             f"of the spectrum, {1 / oscillations:.3g} um, so its phase means little; raise it or "
             "widen spectrum.wavelength"
         )
-    needed = int(np.ceil(2 * oscillations * diameters.stop)) + 1
+    needed = math.ceil(2 * oscillations * diameters.stop) + 1
     if config.spectrum.samples < needed:
         said.append(
             f"spectrum.samples: {config.spectrum.samples} do not resolve the oscillations of the "

@@ -1,7 +1,6 @@
 """Configs as plain data: what stands under dotted keys, and configs made from others."""
 
 from collections.abc import Mapping
-from functools import reduce
 from typing import Any
 
 from pydantic import ValidationError
@@ -101,8 +100,9 @@ def config_at(base: Mapping[str, Any], values: Mapping[str, Any]) -> Config:
     ValidationError
         If a value is wrong.
     """
-    nothing: dict[str, Any] = {}
-    laid = reduce(merge, (nested(key, value) for key, value in values.items()), nothing)
+    laid: dict[str, Any] = {}
+    for key, value in values.items():
+        laid = merge(laid, nested(key, value))
     return Config.model_validate(overlaid(base, laid))
 
 
@@ -114,7 +114,10 @@ def changed(config: Config, *overlays: Mapping[str, Any]) -> Config:
     ConfigError
         If a value is wrong, or the whole impossible.
     """
-    other = validated(reduce(merge, overlays, config.to_dict()))
+    data = config.to_dict()
+    for overlay in overlays:
+        data = merge(data, overlay)
+    other = validated(data)
     if not other.grid.varied:
         require_possible(other)
     return other

@@ -1,19 +1,16 @@
 """A config that varies its keys: the axes of the grid, and the config at each combination."""
 
+import itertools
 import re
 from collections.abc import Iterator, Mapping
-from functools import cache
 from typing import Any, NamedTuple
 
-import numpy as np
 import yaml
 
 from octsim.base.errors import ConfigError
 from octsim.config.checks import plain_remarks
 from octsim.config.derive import bears_on, config_at
-from octsim.config.messages import known_keys
 from octsim.config.models import Config
-from octsim.datasets.variables import MEANINGS
 
 FIXED = (
     "run", "calibration", "expansion", "action_potential", "grid", "archive", "cache", "budget",
@@ -26,12 +23,12 @@ _NUMBERS = re.compile(r"[-+]?[0-9][0-9.e+-]*")
 class Axis(NamedTuple):
     """One dimension of the grid."""
 
-    name: str
-    """Name of the dimension in datasets."""
     keys: tuple[str, ...]
     """Dotted keys that vary along it: one, or those that are zipped."""
     rows: tuple[tuple[Any, ...], ...]
     """Value of each key, as plain data, at each position."""
+    zipped: bool = False
+    """Whether all keys of the grid vary along it together."""
 
 
 class Combination(NamedTuple):
@@ -64,26 +61,6 @@ def value_at(config: Config, key: str) -> Any:
     return value
 
 
-@cache
-def dimension_name(key: str) -> str:
-    """Name the dimension of a dotted key by its last part, or by as many as tell it from others.
-
-    Examples
-    --------
-    >>> dimension_name("detector.core_diameter"), dimension_name("spectrum.wavelength.min")
-    ('core_diameter', 'wavelength_min')
-    """
-    parts = key.split(".")
-    known = [parts for parts in (k.split(".") for k in known_keys()) if parts[0] not in FIXED]
-    # below a subsection the last part alone says little: neuron, min
-    for count in range(min(len(parts) - 1, 2), len(parts)):
-        tail = parts[-count:]
-        alike = sum(other[-count:] == tail for other in known)
-        if alike == 1 and "_".join(tail) not in MEANINGS:
-            return "_".join(tail)
-    return "_".join(parts)
-
-
 def axes(config: Config, *keys: str) -> tuple[Axis, ...]:
     """Give the axes of a config's grid.
 
@@ -101,21 +78,20 @@ def axes(config: Config, *keys: str) -> tuple[Axis, ...]:
     }
     if config.grid.combine == "product":
         return tuple(
-            Axis(dimension_name(key), (key,), tuple((value,) for value in values))
-            for key, values in varied.items()
+            Axis((key,), tuple((value,) for value in values)) for key, values in varied.items()
         )
     if not varied:
         return ()
     # of rows that only differ in what does not count, one is enough
     rows = {as_text(list(row)): row for row in zip(*varied.values(), strict=True)}
-    return (Axis("combination", tuple(varied), tuple(rows.values())),)
+    return (Axis(tuple(varied), tuple(rows.values()), zipped=True),)
 
 
 def combinations(config: Config, *keys: str) -> Iterator[Combination]:
     """Give every combination of the grid, as far as it varies some keys: the last axis fastest."""
     along = axes(config, *keys)
     base = {**config.to_dict(), "grid": {}}
-    for position in np.ndindex(*(len(axis.rows) for axis in along)):
+    for position in itertools.product(*(range(len(axis.rows)) for axis in along)):
         values = {
             key: value
             for axis, row in zip(along, position, strict=True)

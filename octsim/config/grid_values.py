@@ -6,13 +6,12 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
 from pydantic import ValidationError
 
 from octsim.base.errors import ConfigError
 from octsim.config.checks import impossible
 from octsim.config.derive import config_at, overlap, part_of
-from octsim.config.fields import DECIMALS
+from octsim.config.fields import evenly
 from octsim.config.grid import FIXED, as_text, axes, combinations, value_at
 from octsim.config.messages import explain, known_keys, nearest_key
 from octsim.config.models import Config, Grid
@@ -131,7 +130,7 @@ def _spaced(key: str, given: Mapping[str, Any]) -> list[Any]:
             f"grid.{key}.start: {ends[0]} given; it must be below grid.{key}.stop = {ends[1]}, "
             "or the range is empty"
         )
-    values: list[float] = np.round(np.linspace(start, stop, num), DECIMALS).tolist()
+    values: list[float] = evenly(start, stop, num).tolist()
     if lengths:
         return [format_length(value) for value in values]
     if not all(isinstance(end, int) for end in ends):

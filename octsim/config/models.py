@@ -5,10 +5,8 @@ The models are the one source: `config/schema.json` and `docs/config.md` are gen
 """
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
 from octsim.config.archive import ArchiveConfig
@@ -30,6 +28,17 @@ from octsim.config.processing import Processing as Processing
 from octsim.config.units import Length
 from octsim.optics.band import wavenumbers
 from octsim.schemes.table import COUNTED_RAYS, PRESETS, SCHEMES
+
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    SchemeName: TypeAlias = str
+    PresetName: TypeAlias = str
+else:  # a scheme is a row of the table, and nothing more to be listed here
+    SchemeName, PresetName = Literal[tuple(SCHEMES)], Literal[tuple(PRESETS)]
 
 
 class RefractiveIndex(Section):
@@ -65,15 +74,6 @@ class DetectorConfig(Section):
     core_diameter: PositiveLength = _key(
         "4.4 um", "of the fibre; R_det = core_diameter / (2 magnification)"
     )
-
-
-if TYPE_CHECKING:
-    from typing import TypeAlias
-
-    SchemeName: TypeAlias = str
-    PresetName: TypeAlias = str
-else:  # a scheme is a row of the table, and nothing more to be listed here
-    SchemeName, PresetName = Literal[tuple(SCHEMES)], Literal[tuple(PRESETS)]
 
 
 class Tracing(Section):
@@ -112,7 +112,7 @@ class Spectrum(Section):
         1000, "wavenumbers, evenly spaced, both ends included"
     )
 
-    def wavenumbers(self) -> NDArray[np.float64]:
+    def wavenumbers(self) -> "NDArray[np.float64]":
         """Return the wavenumbers 2π/λ, evenly spaced and increasing, shape (K,), 1/µm."""
         return wavenumbers(self.wavelength.min, self.wavelength.max, self.samples)
 
@@ -139,6 +139,9 @@ class FocusLawConfig(Section):
     )
 
 
+_Lengths = TypeVar("_Lengths", float, "NDArray[np.float64]")
+
+
 class FocusLine(Section):
     """A given focus law: focus = slope · diameter + intercept; slope 0 is a fixed focus."""
 
@@ -150,8 +153,8 @@ class FocusLine(Section):
         """Give the line of a fitted law: a `focus_law` dataset."""
         return cls.model_construct(slope=float(law["slope"]), intercept=float(law["intercept"]))
 
-    def at(self, diameter: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Give the focus for each diameter, both in µm."""
+    def at(self, diameter: _Lengths) -> _Lengths:
+        """Return the focus for each diameter, both in µm."""
         return self.slope * diameter + self.intercept
 
 
@@ -213,7 +216,7 @@ class Cache(Section):
     """Where traced points are kept; no result depends on it."""
 
     file: Annotated[str, Field(min_length=1)] = _key(
-        ".octsim/points.sqlite", "of this folder, or one that several share"
+        ".octsim/points", "folder for them, beside the run's results or one that several share"
     )
     gigabytes: Annotated[Number, Field(ge=0, le=1e6)] = _key(
         4.0, "its largest size; 0 keeps and reads nothing"

@@ -2,7 +2,6 @@
 
 from typing import Annotated, Literal
 
-import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
 
 from octsim.config.fields import Number, PositiveLength, Section, key
@@ -20,6 +19,7 @@ def _window(value: object) -> object:
 
 def _is_made(value: tuple[str | float, ...]) -> tuple[str | float, ...]:
     # here, as it takes half a second to import and few windows have parameters
+    import numpy as np
     from scipy.signal import get_window
 
     try:

@@ -1,67 +1,183 @@
-"""Lengths with their unit: read from text, kept as micrometres, written back as text."""
+"""Quantities with their unit: read from text, kept as numbers, written back as text.
 
+A unit is a row of one table, with its dimension. Another quantity of the config takes a `Quantity`
+and a named type, as `LENGTH` and `Length` are.
+"""
+
+import difflib
 import re
+from collections.abc import Mapping
 from decimal import Decimal, DecimalException
 from functools import cache, lru_cache
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
-import pint
 from pydantic import BeforeValidator, PlainSerializer, WithJsonSchema
 
-_EXAMPLES = "write it with its unit, such as 5 nm, 1.4 um or 0.3 mm"
+
+class Unit(NamedTuple):
+    """What a unit measures, and how much of it."""
+
+    dimension: str
+    size: Decimal
+    """How many of its dimension's base units it is: um, s, Hz, rad, 1/um and, else, SI's."""
+
+
+PREFIXES: Mapping[str, tuple[tuple[str, ...], int]] = {
+    "quecto": (("q",), -30), "ronto": (("r",), -27), "yocto": (("y",), -24),
+    "zepto": (("z",), -21), "atto": (("a",), -18), "femto": (("f",), -15), "pico": (("p",), -12),
+    "nano": (("n",), -9), "micro": (("u", "\u00b5", "\u03bc"), -6), "milli": (("m",), -3),
+    "centi": (("c",), -2), "deci": (("d",), -1), "deca": (("da",), 1), "hecto": (("h",), 2),
+    "kilo": (("k",), 3), "mega": (("M",), 6), "giga": (("G",), 9), "tera": (("T",), 12),
+    "peta": (("P",), 15), "exa": (("E",), 18), "zetta": (("Z",), 21), "yotta": (("Y",), 24),
+    "ronna": (("R",), 27), "quetta": (("Q",), 30),
+}  # fmt: skip
+"""SI's prefixes: the symbols and the power of ten of each."""
+
+# dimension, symbol, names and size of what takes prefixes
+_PREFIXED = (
+    ("length", "m", ("meter", "meters", "metre", "metres"), "1e6"),
+    ("time", "s", ("second", "seconds"), "1"),
+    ("frequency", "Hz", ("hertz",), "1"),
+    ("angle", "rad", ("radian", "radians"), "1"),
+    ("mass", "g", ("gram", "grams"), "1e-3"),
+    ("temperature", "K", ("kelvin",), "1"),
+    ("current", "A", ("ampere", "amperes"), "1"),
+    ("voltage", "V", ("volt", "volts"), "1"),
+    ("power", "W", ("watt", "watts"), "1"),
+    ("energy", "J", ("joule", "joules"), "1"),
+    ("energy", "eV", ("electronvolt", "electronvolts"), "1.602176634e-19"),
+    ("force", "N", ("newton", "newtons"), "1"),
+    ("pressure", "Pa", ("pascal", "pascals"), "1"),
+)
+_DEGREE = "0.01745329251994329576923690768488612713"
+# dimension, symbols and names, and size of what takes none
+_PLAIN = (
+    ("length", ("\u00c5", "\u212b", "angstrom", "angstroms", "ångström", "ångströms"), "1e-4"),
+    ("length", ("\u00b5", "\u03bc", "micron", "microns"), "1"),
+    ("length", ("in", "inch", "inches"), "25400"),
+    ("length", ("mil", "mils", "thou"), "25.4"),
+    ("length", ("ft", "foot", "feet"), "304800"),
+    ("length", ("yd", "yard", "yards"), "914400"),
+    ("time", ("min", "minute", "minutes"), "60"),
+    ("time", ("h", "hour", "hours"), "3600"),
+    ("angle", ("deg", "°", "degree", "degrees"), _DEGREE),
+    ("ratio", ("%", "percent"), "0.01"),
+)
+_INVERSE = re.compile(r"(?:1|rad)\s*/\s*(\S+)|(\S+?)\s*(?:\^|\*\*)?\s*-1")
 _NUMBER_PATTERN = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
-_UNIT_PATTERN = r"[A-Za-zµμÅ]+"
 _NUMBER = re.compile(rf"\s*{_NUMBER_PATTERN}\s*")
-_LENGTH = re.compile(rf"\s*({_NUMBER_PATTERN})\s*({_UNIT_PATTERN})\s*")
+_QUANTITY = re.compile(rf"\s*({_NUMBER_PATTERN})\s*([^\W\d_]\S*|[°%]|\s1/\S+)\s*")
 
 
 @cache
-def _registry() -> "pint.UnitRegistry[Decimal]":
-    # Decimals convert exactly: '650 nm' and '0.65 um' are the same float.
-    return pint.UnitRegistry(non_int_type=Decimal)
+def known_units() -> Mapping[str, Unit]:
+    """Return every unit by each way to write it, but for inverse lengths."""
+    units = {}
+    for dimension, symbol, names, size in _PREFIXED:
+        for prefix, (shorts, power) in {"": (("",), 0), **PREFIXES}.items():
+            unit = Unit(dimension, Decimal(size).scaleb(power))
+            spelt = (*(short + symbol for short in shorts), *(prefix + name for name in names))
+            units.update(dict.fromkeys(spelt, unit))
+    for dimension, spelt, size in _PLAIN:
+        units.update(dict.fromkeys(spelt, Unit(dimension, Decimal(size))))
+    return units
 
 
-def parse_length(text: object) -> float:
-    """Read a length such as ``"5 nm"``.
+def find_unit(name: str) -> Unit | None:
+    """Return the unit of a name, such as ``um``, ``micrometers`` or ``1/um``; None if not known."""
+    unit = known_units().get(name)
+    inverse = None if unit else known_units().get(inverted(name) or "")
+    if inverse and inverse.dimension == "length":
+        return Unit("inverse length", 1 / inverse.size)
+    return unit
+
+
+def inverted(name: str) -> str | None:
+    """Return what a unit is the inverse of: ``um`` for 1/um, rad/um, um-1, um^-1 and um**-1."""
+    match = _INVERSE.fullmatch(name)
+    return match[1] or match[2] if match else None
+
+
+class Quantity(NamedTuple):
+    """A quantity of the config."""
+
+    dimension: str
+    noun: str
+    """What it is called, with its article."""
+    unit: str
+    """In which it is kept: the base unit of its dimension."""
+    examples: tuple[str, ...]
+
+    @property
+    def remedy(self) -> str:
+        """What to do, where one is not given as it should be."""
+        *first, last = self.examples
+        return f"write it with its unit, such as {', '.join(first)} or {last}"
+
+
+LENGTH = Quantity("length", "a length", "um", ("5 nm", "1.4 um", "0.3 mm"))
+
+
+def parse(quantity: Quantity, text: object) -> float:
+    """Read a quantity such as ``"5 nm"``.
 
     Parameters
     ----------
+    quantity : Quantity
+        What is asked for.
     text : object
-        A number with a unit of length, as text.
+        A number with a unit, as text.
 
     Returns
     -------
     float
-        The length in µm, correctly rounded.
+        The number in the quantity's unit, correctly rounded.
 
     Raises
     ------
     ValueError
-        If there is no unit, the unit is not one of length, or the number is not finite.
+        If there is no unit, it is not one of that quantity, or the number is far out of range.
     """
     if isinstance(text, str):
-        return _parsed(text)
+        return _parsed(quantity, text)
     bare = isinstance(text, int | float) and not isinstance(text, bool)
-    raise ValueError(f"{'a length needs its unit' if bare else 'not a length'}; {_EXAMPLES}")
+    raise ValueError(_unreadable(quantity, bare))
 
 
 @lru_cache(maxsize=100_000)  # the combinations of a grid repeat theirs
-def _parsed(text: str) -> float:
-    match = _LENGTH.fullmatch(text)
+def _parsed(quantity: Quantity, text: str) -> float:
+    match = _QUANTITY.fullmatch(text)
     if match is None:
-        reason = "a length needs its unit" if _NUMBER.fullmatch(text) else "not a length"
-        raise ValueError(f"{reason}; {_EXAMPLES}")
-    number, unit = match.groups()
+        raise ValueError(_unreadable(quantity, bare=_NUMBER.fullmatch(text) is not None))
+    number, name = match[1], match[2].strip()
+    unit = find_unit(name)
+    if unit is None:
+        nearest = _nearest(quantity, name)
+        meant = f"; did you mean '{nearest}'?" if nearest else ""
+        raise ValueError(f"'{name}' is not a unit that is known{meant}; {quantity.remedy}")
+    if unit.dimension != quantity.dimension:
+        raise ValueError(f"'{name}' is not a unit of {quantity.dimension}; {quantity.remedy}")
     try:
-        quantity = _registry().Quantity(Decimal(number), unit)
-        length = float(quantity.to("micrometer").magnitude)
-    except pint.DimensionalityError:
-        raise ValueError(f"'{unit}' is not a unit of length; {_EXAMPLES}") from None
+        # Decimals convert exactly: '650 nm' and '0.65 um' are the same float
+        return float(Decimal(number) * unit.size)
     except DecimalException:
-        raise ValueError(f"far out of range; {_EXAMPLES}") from None
-    except (pint.UndefinedUnitError, ValueError):  # pint calls 'nan' and the like a scaling factor
-        raise ValueError(f"'{unit}' is not a unit that is known; {_EXAMPLES}") from None
-    return length
+        raise ValueError(f"far out of range; {quantity.remedy}") from None
+
+
+def _unreadable(quantity: Quantity, bare: bool) -> str:
+    reason = f"{quantity.noun} needs its unit" if bare else f"not {quantity.noun}"
+    return f"{reason}; {quantity.remedy}"
+
+
+def _nearest(quantity: Quantity, name: str) -> str | None:
+    names = [known for known, unit in known_units().items() if unit.dimension == quantity.dimension]
+    alike = [known for known in names if known.lower() == name.lower()]
+    return next(iter(alike or difflib.get_close_matches(name, names, n=1, cutoff=0.75)), None)
+
+
+def parse_length(text: object) -> float:
+    """Read a length such as ``"5 nm"``, in µm; see `parse`."""
+    return parse(LENGTH, text)
 
 
 def format_length(length: float) -> str:
@@ -72,12 +188,12 @@ def format_length(length: float) -> str:
     >>> format_length(0.005)
     '0.005 um'
     """
-    return f"{length!r} um"
+    return f"{length!r} {LENGTH.unit}"
 
 
 _SCHEMA: dict[str, Any] = {
     "type": "string",
-    "pattern": rf"^{_LENGTH.pattern}$",
+    "pattern": rf"^\s*({_NUMBER_PATTERN})\s*([A-Za-zµμÅÅåö]+)\s*$",
     "description": "a length with its unit",
     "examples": ["5 nm", "1.4 um", "300 um"],
 }

@@ -1,115 +1,261 @@
-"""Which keys of a config a stage reads: nothing else makes it run again."""
+"""The catalog: every dataset of a run, from first to last, and those beside it.
 
-from collections.abc import Callable, Mapping
-from typing import Any
+    config ─┬─ focus_scan
+            ├─ focus_sweep ─ gaussian_fits ─ focus_law ─┐      (where sweep.focus is law)
+            └───────────────────────────────── detections ─┬─ spectra ─ fourier ─ phase_slope
+                                                           └─ paths
 
-from octsim.config.derive import parts_of
-from octsim.config.grid import Axis, axes, combinations
-from octsim.config.models import Config
+A dataset is a row: what it follows from, what makes it, what is drawn from it. The workflow, the
+digests, the axes of a grid, the archive and the command line all read this table.
+"""
 
-_SPIRAL = ("tracing.rays", "tracing.min_amplitude")
+from collections.abc import Mapping
+from dataclasses import dataclass
 
+from octsim.schemes.table import COUNTED_RAYS
+
+LIGHT = "(light)"
+"""Stands for the keys that the light of a point depends on, which are the scheme's to say."""
+SUMMING = "(summing)"
+"""Stands for the keys of the scheme that a sum over the wavenumbers depends on."""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure that is drawn from datasets."""
+
+    name: str
+    draw: str
+    """The function that draws it, ``"module:function"``; it takes the datasets in their order."""
+    caption: str
+    """What it shows."""
+    of: tuple[str, ...] = ()
+    """Datasets that it is drawn from; without any named, the one whose row it stands in."""
+    without: tuple[str, ...] = ()
+    """Variables that it does not need, and that may be large."""
+    over_grid: bool = False
+    """Whether it shows datasets over a grid; the others show those of a plain config."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A dataset, in ``<name>.nc``."""
+
+    name: str
+    make: str
+    """The function that makes it, ``"module:function"``. It takes the config and the datasets that
+    this one comes after, and of the keywords threads, points, share and prepare what it names."""
+    message: str
+    """What making it is, in a few words."""
+    reads: tuple[str, ...] = ()
+    """Dotted keys of the config that it reads itself, or what stands for some."""
+    after: tuple[str, ...] = ()
+    """Datasets that it is made from."""
+    job: str = ""
+    """The job that makes it, with others of the same name; its own, unless it says so."""
+    traces: bool = False
+    """Whether it traces points of a sweep, so that it may take long and is scattered then."""
+    beside: bool = False
+    """Whether it is beside a run, of a single config, and made when it is asked for."""
+    summary: str = ""
+    """The function that says in one line what the dataset comes to, if there is one."""
+    doubts: str = ""
+    """The function that says, a line each, where it is not what one would want."""
+    figures: tuple[Figure, ...] = ()
+
+    @property
+    def rule(self) -> str:
+        """Name of the job that makes it."""
+        return self.job or self.name
+
+    @property
+    def module(self) -> str:
+        """Module that makes it."""
+        return self.make.partition(":")[0]
+
+
+_COUNTED = COUNTED_RAYS.keys  # figure 6 counts rays, whatever the scheme
 _COMPARED = ("scene", "objective", "detector", "tracing", "spectrum", "sweep", "processing")
-# spectra as accurate as small steps need, whatever the run's scheme
-_CALIBRATED = ("tracing.min_amplitude",
-    "scene", "objective", "detector", "tracing.max_intersections", "spectrum", "processing",
-    "calibration", "sweep.focus",
+# of spectra as accurate as small steps need, whatever the run's scheme
+_CALIBRATED = (
+    "tracing.min_amplitude", "scene", "objective", "detector", "tracing.max_intersections",
+    "spectrum", "processing", "calibration", "sweep.focus",
 )  # fmt: skip
 
+_RUN = (
+    Stage(
+        "focus_scan", "octsim.stages.focus_scan:focus_scan",
+        "Scan the focus for one diameter",
+        reads=(LIGHT, *_COUNTED, "spectrum", "focus_scan"), traces=True,
+        figures=(
+            Figure("figure_6", "octsim.figures.focus_scan:figure_6",
+                   "detected rays and intensity over the focus"),
+        ),
+    ),
+    Stage(
+        "focus_sweep", "octsim.stages.focus_sweep:focus_sweep",
+        "Measure the intensity over the focus for the diameters of the focus law",
+        reads=(LIGHT, "spectrum", "focus_law"), traces=True,
+    ),
+    Stage(
+        "gaussian_fits", "octsim.stages.gaussian_fits:gaussian_fits",
+        "Fit a Gaussian over the focus of each diameter",
+        after=("focus_sweep",), job="focus_law",
+    ),
+    Stage(
+        "focus_law", "octsim.stages.focus_law:focus_law",
+        "Fit the focus law through their centres",
+        after=("gaussian_fits",), job="focus_law",
+        figures=(
+            Figure("figure_7", "octsim.figures.focus_law:figure_7",
+                   "foci of greatest intensity, and the line through them",
+                   of=("gaussian_fits", "focus_law")),
+        ),
+    ),
+    Stage(
+        "detections", "octsim.stages.detections:detections",
+        "Trace the sweep over diameters",
+        reads=(LIGHT, "sweep"), after=("focus_law",), traces=True,
+    ),
+    Stage(
+        "spectra", "octsim.stages.spectra:spectra",
+        "Sum the detected rays to spectra",
+        reads=("spectrum", SUMMING), after=("detections",), job="spectra",
+        doubts="octsim.stages.spectra:doubts",
+        figures=(
+            Figure("figure_8", "octsim.figures.spectra:figure_8",
+                   "a spectrum on its way to its Fourier transform"),
+        ),
+    ),
+    Stage(
+        "paths", "octsim.stages.paths:light_paths",
+        "Share their intensity out among the light paths",
+        reads=("spectrum.wavelength",), after=("detections",), job="spectra",
+        figures=(
+            Figure("paths", "octsim.figures.paths:figure_paths",
+                   "what each light path has in the spectra"),
+        ),
+    ),
+    Stage(
+        "fourier", "octsim.stages.fourier:fourier",
+        "Transform the spectra",
+        reads=("processing",), after=("spectra",), job="phase_slope",
+        figures=(
+            Figure("figure_9", "octsim.figures.fourier:figure_9",
+                   "Fourier transform of a spectrum"),
+            Figure("figure_10", "octsim.figures.fourier:figure_10",
+                   "magnitude of the components over the diameter",
+                   of=("fourier", "phase_slope")),
+            Figure("figure_11", "octsim.figures.fourier:figure_11",
+                   "phase of the components over the diameter",
+                   of=("fourier", "phase_slope")),
+        ),
+    ),
+    Stage(
+        "phase_slope", "octsim.stages.phase_slope:phase_slope",
+        "Differentiate their phase over the diameter",
+        reads=("processing", "scene.refractive_index.neuron"), after=("fourier",),
+        job="phase_slope", summary="octsim.stages.phase_slope:summary",
+        figures=(
+            Figure("figure_12", "octsim.figures.phase_slope:figure_12",
+                   "phase slope over the diameter"),
+            Figure("grid", "octsim.figures.grid:figure_grid",
+                   "phase slope across the grid",
+                   without=("component_phase_slope",), over_grid=True),
+        ),
+    ),
+)  # fmt: skip
 
-def instrument(config: Config) -> tuple[str, ...]:
-    """Give the keys that every stage reads that traces."""
-    # an accuracy is one in a band; rays that are counted serve any
-    paths = config.tracing.scheme == "paths"
-    own = ("tracing.accuracy", "spectrum.wavelength") if paths else _SPIRAL
-    return (
-        "scene", "objective", "detector", "tracing.scheme", "tracing.max_intersections", *own,
-    )  # fmt: skip
+_BESIDE = (
+    Stage(
+        "stability", "octsim.studies.stability.study:stability",
+        "Measure rounding at the extremes against 50 digits",
+        reads=(LIGHT, *_COUNTED, "spectrum", "sweep"), beside=True,
+        summary="octsim.studies.stability.study:summary",
+        figures=(
+            Figure("stability", "octsim.figures.stability:stability_figure",
+                   "errors of rounding at the extremes"),
+        ),
+    ),
+    Stage(
+        "tradeoff", "octsim.studies.tradeoff.study:tradeoff",
+        "Measure error and cost, one setting after the other",
+        reads=(*_COMPARED, "focus_law"), beside=True,
+        summary="octsim.studies.tradeoff.study:summary",
+        figures=(
+            Figure("tradeoff", "octsim.figures.tradeoff:tradeoff_figure",
+                   "error over cost of each setting"),
+        ),
+    ),
+    Stage(
+        "causes", "octsim.studies.causes.study:causes",
+        "Tell what makes the phase slope scatter, and spike",
+        reads=(LIGHT, "spectrum", "sweep", "processing"), after=("focus_law",), beside=True,
+        summary="octsim.studies.causes.study:summary",
+        figures=(
+            Figure("causes", "octsim.figures.causes:causes_figure",
+                   "what makes the phase slope scatter"),
+            Figure("spike", "octsim.figures.causes:spike_figure",
+                   "what makes the phase slope spike"),
+        ),
+    ),
+    Stage(
+        "estimators", "octsim.studies.estimators.study:estimators",
+        "Compare the estimators of the phase",
+        reads=_COMPARED, after=("focus_law",), beside=True,
+        summary="octsim.studies.estimators.study:summary",
+        figures=(
+            Figure("estimators", "octsim.figures.estimators:estimators_figure",
+                   "estimators of the phase compared"),
+        ),
+    ),
+    Stage(
+        "calibration", "octsim.studies.calibration.study:calibration",
+        "Differentiate the phase over the diameter at a fixed focus and gap",
+        reads=_CALIBRATED, after=("focus_law",), beside=True,
+        summary="octsim.studies.calibration.study:summary",
+        doubts="octsim.stages.spectra:doubts",
+        figures=(
+            Figure("calibration", "octsim.figures.calibration:calibration_figure",
+                   "phase slope at a fixed focus, and what makes its error"),
+        ),
+    ),
+    Stage(
+        "expansion", "octsim.studies.calibration.expansion:expansion_of_series",
+        "Turn a measured series of phases into nanometres",
+        reads=("expansion",), after=("calibration",), beside=True,
+        summary="octsim.studies.calibration.expansion:summary",
+        figures=(
+            Figure("expansion", "octsim.figures.expansion:expansion_figure",
+                   "expansion that a measured series comes to, with its errors"),
+        ),
+    ),
+    Stage(
+        "action_potential", "octsim.studies.calibration.action_potential:action_potential",
+        "Simulate an action potential and recover it",
+        reads=(*_CALIBRATED, "action_potential"), after=("calibration", "focus_law"),
+        beside=True,
+        summary="octsim.studies.calibration.action_potential:summary",
+        figures=(
+            Figure("action_potential", "octsim.figures.action_potential:action_potential_figure",
+                   "an action potential that is recovered, with its errors",
+                   of=("action_potential", "calibration")),
+        ),
+    ),
+)  # fmt: skip
+
+CATALOG: Mapping[str, Stage] = {row.name: row for row in (*_RUN, *_BESIDE)}
+"""Every dataset by its name, in the order in which they are made."""
+STAGES = tuple(row.name for row in _RUN)
+"""Datasets of a run, in the order that light meets them."""
+TARGETS = tuple(row.name for row in _BESIDE)
+"""Datasets beside a run."""
 
 
-_DECIDING = ("tracing.scheme", "tracing.preset", "sweep.focus")
-"""Keys that decide which others are read."""
-
-
-def keys_read(stage: str, config: Config) -> tuple[str, ...]:
-    """Give the keys that a stage reads itself, at any combination, besides others' datasets."""
-    return _of_all(_read, stage, config)
-
-
-def keys_behind(stage: str, config: Config) -> tuple[str, ...]:
-    """Give the keys that a stage's dataset depends on: its own and those of stages before it."""
-    return _of_all(_behind, stage, config)
-
-
-def stage_axes(stage: str, config: Config) -> tuple[Axis, ...]:
-    """Give the axes of the grid that a stage's dataset has: those of the keys that it depends on.
-
-    A stage that has nothing to do with any varied key has none.
-    """
-    return axes(config, *keys_behind(stage, config))
-
-
-def needs_law(config: Config) -> bool:
-    """Tell whether the fitted focus law is needed at some combination."""
-    return any(at.config.sweep.focus == "law" for at in combinations(config, "sweep.focus"))
-
-
-def _of_all(
-    keys: Callable[[str, Config], tuple[str, ...]], stage: str, config: Config
-) -> tuple[str, ...]:
-    every = (key for at in combinations(config, *_DECIDING) for key in keys(stage, at.config))
-    return tuple(dict.fromkeys(every))
-
-
-def _read(stage: str, config: Config) -> tuple[str, ...]:
-    traced = instrument(config)
-    own: Mapping[str, tuple[str, ...]] = {
-        # figure 6 counts the rays of the spiral, whatever the scheme
-        "focus_scan": (*traced, *_SPIRAL, "spectrum", "focus_scan"),
-        "focus_sweep": (*traced, "spectrum", "focus_law"),
-        "detections": (*traced, "sweep"),
-        "spectra": ("spectrum", *(key for key in traced if key == "tracing.accuracy")),
-        "paths": ("spectrum.wavelength",),
-        "phase_slope": ("processing", "scene.refractive_index.neuron"),
-        "stability": (*traced, *_SPIRAL, "spectrum", "sweep"),
-        "causes": (*traced, "spectrum", "sweep", "processing"),
-        "calibration": _CALIBRATED,
-        "expansion": ("expansion",),
-        "action_potential": (*_CALIBRATED, "action_potential"),
-        "estimators": _COMPARED,
-        "tradeoff": (*_COMPARED, "focus_law"),
-    }
-    return own.get(stage, ())
-
-
-def _behind(stage: str, config: Config) -> tuple[str, ...]:
-    law = _read("focus_sweep", config)
-    fitted = law if config.sweep.focus == "law" else ()
-    swept = (*_read("detections", config), *fitted)
-    summed = (*swept, *_read("spectra", config))
-    calibrated = (*_CALIBRATED, *fitted)
-    behind = {
-        "detections": swept,
-        "spectra": summed,
-        "paths": (*swept, *_read("paths", config)),
-        "fourier": (*summed, "processing"),
-        "phase_slope": (*summed, "processing"),
-        "calibration": calibrated,
-        "expansion": (*calibrated, "expansion"),
-        "action_potential": (*calibrated, "action_potential"),
-        "gaussian_fits": law,
-        "focus_law": law,
-        "causes": (*_read("causes", config), *fitted),
-        "estimators": (*_COMPARED, *fitted),
-    }
-    return behind.get(stage, _read(stage, config))
-
-
-def differing(stage: str, config: Config, other: Mapping[str, Any]) -> list[str]:
-    """Give the keys that a stage's dataset depends on and that another config, as data, differs in.
-
-    Keys are those that the stage depends on under `config`; a varied one is ``grid.<key>``.
-    """
-    keys = keys_behind(stage, config)
-    asked, made = parts_of(config.to_dict(), *keys), parts_of(other, *keys)
-    return [key for key in dict.fromkeys((*asked, *made)) if made.get(key) != asked.get(key)]
+def jobs(beside: bool) -> dict[str, tuple[Stage, ...]]:
+    """Return the jobs of a run, or those beside it, and the datasets that each makes."""
+    found: dict[str, tuple[Stage, ...]] = {}
+    for row in CATALOG.values():
+        if row.beside == beside:
+            found[row.rule] = (*found.get(row.rule, ()), row)
+    return found

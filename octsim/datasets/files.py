@@ -13,12 +13,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.base.environment import environment
 from octsim.base.errors import DatasetError
 from octsim.base.files import reason, whole
-from octsim.base.provenance import source_digest
+from octsim.base.provenance import environment
 from octsim.config.models import Config
-from octsim.datasets.catalog import differing
+from octsim.datasets.code import code_of
+from octsim.datasets.keys import differing
 from octsim.datasets.variables import meaning
 from octsim.datasets.versions import SCHEMA, upgraded
 
@@ -33,7 +33,6 @@ def make(
     title: str,
     variables: Mapping[str, Any],
     coordinates: Mapping[str, Any],
-    module: str,
 ) -> xr.Dataset:
     """Put a stage's results together with what they mean and what made them.
 
@@ -47,17 +46,15 @@ def make(
         One line on what is held.
     variables, coordinates : mapping
         As `xarray.Dataset` takes them; each name has its entry in `MEANINGS`.
-    module : str
-        Module that the stage's function stands in, for the digest of the sources.
     """
     dataset = xr.Dataset(variables, coordinates)
     for name in map(str, dataset.variables):
         dataset[name].attrs = meaning(name) | dataset[name].attrs
-    dataset.attrs = attributes(stage, config, title, module)
+    dataset.attrs = attributes(stage, config, title)
     return dataset
 
 
-def attributes(stage: str, config: Config, title: str, module: str) -> dict[str, Any]:
+def attributes(stage: str, config: Config, title: str) -> dict[str, Any]:
     """Give what a stage's dataset says of itself: what it is, and all it takes to make it again."""
     return {
         "Conventions": "CF-1.11",
@@ -67,7 +64,7 @@ def attributes(stage: str, config: Config, title: str, module: str) -> dict[str,
         "config": json.dumps(config.to_record()),
         "octsim_version": version("octsim"),
         "environment": json.dumps(environment()),
-        "source_digest": source_digest(module),
+        "source_digest": code_of(stage, config),
         "creation_command": (
             "save the attribute 'config' of this file as config.json, then: "
             f".venv/bin/snakemake results/{config.run}/{stage}.nc --cores 2 "

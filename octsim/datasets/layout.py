@@ -8,10 +8,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.config.grid import Axis, Combination, as_text, combinations, dimension_name, value_at
-from octsim.config.messages import unit_of
+from octsim.config.grid import Axis, Combination, combinations
 from octsim.config.models import Config
-from octsim.datasets.catalog import keys_behind, stage_axes
+from octsim.datasets.axes import axis_coordinates, axis_name
+from octsim.datasets.keys import keys_behind, stage_axes
 from octsim.datasets.variables import meaning
 
 Coordinate = tuple[str, NDArray[Any]]
@@ -31,8 +31,6 @@ class Layout:
         The run.
     title : str
         One line on what is held.
-    module : str
-        Module that the stage's function stands in, for the digest of the sources.
     own : callable
         Gives the coordinates of a combination's config, by name.
     swept : str, optional
@@ -46,12 +44,11 @@ class Layout:
         stage: str,
         config: Config,
         title: str,
-        module: str,
         own: Callable[[Config], Mapping[str, Coordinate]],
         swept: str | None = None,
         bare: Callable[[Config], Mapping[str, int]] = lambda _: {},
     ) -> None:
-        self.stage, self.config, self.title, self.module = stage, config, title, module
+        self.stage, self.config, self.title = stage, config, title
         self.swept = swept
         self.axes: tuple[Axis, ...] = stage_axes(stage, config)
         self.combinations = tuple(combinations(config, *keys_behind(stage, config)))
@@ -74,7 +71,7 @@ class Layout:
     @property
     def grid_dimensions(self) -> tuple[str, ...]:
         """Name of each axis."""
-        return tuple(axis.name for axis in self.axes)
+        return tuple(map(axis_name, self.axes))
 
     def count(self, at: Combination) -> int:
         """Give how many points a combination has along the swept dimension."""
@@ -165,21 +162,3 @@ def _digest(values: NDArray[Any]) -> bytes:
 def filling(dtype: np.dtype[Any]) -> Any:
     """Give what stands where a combination has nothing: NaN, −1 or an empty text."""
     return {"f": np.nan, "i": -1, "u": 0, "b": False}.get(dtype.kind, "")
-
-
-def axis_coordinates(
-    axes: tuple[Axis, ...], along: tuple[Combination, ...]
-) -> dict[str, xr.Variable]:
-    """Give the values of each varied key along its axis: numbers where they are, else text."""
-    found: dict[str, xr.Variable] = {}
-    for place, axis in enumerate(axes):
-        # one combination for each row of this axis
-        rows = {at.position[place]: at.config for at in reversed(along)}
-        for number, key in enumerate(axis.keys):
-            values: list[Any] = [value_at(rows[row], key) for row in range(len(axis.rows))]
-            if not all(isinstance(v, int | float) and not isinstance(v, bool) for v in values):
-                values = [as_text(row[number]) for row in axis.rows]
-            words = key.replace(".", " ").replace("_", " ")
-            attributes = {"units": unit_of(key), "long_name": words, "config_key": key}
-            found[dimension_name(key)] = xr.Variable((axis.name,), np.array(values), attributes)
-    return found

@@ -11,7 +11,8 @@ from octsim.base.errors import DatasetError
 from octsim.base.files import reason
 from octsim.config.grid import Combination, as_text
 from octsim.config.models import Config
-from octsim.datasets.catalog import stage_axes
+from octsim.datasets.axes import axis_name
+from octsim.datasets.keys import stage_axes
 from octsim.datasets.layout import OF_ITS_OWN, Layout, filling
 
 RAGGED = "rays_detected"
@@ -74,7 +75,7 @@ class Stored:
             If the file can't be read, or is of other points.
         """
         place = {
-            axis.name: rows[as_text([at.values[key] for key in axis.keys])]
+            axis_name(axis): rows[as_text([at.values[key] for key in axis.keys])]
             for axis, rows in zip(self._axes, self._rows, strict=True)
         }
         file = self.dataset.encoding.get("source", self._stage)

@@ -129,7 +129,7 @@ def gathered(stream: Stream) -> xr.Dataset:
     layout = stream.layout
     memory = _Memory(layout.sizes)
     pour(stream, memory)
-    described = attributes(layout.stage, layout.config, layout.title, layout.module)
+    described = attributes(layout.stage, layout.config, layout.title)
     return xr.Dataset(memory.variables(), layout.coordinates, described)
 
 

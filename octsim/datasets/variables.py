@@ -41,6 +41,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "path_code": ("1", "code of the light path"),
     "path_rays": ("1", "number of rays on the path"),
     "phase": ("rad", "phase of the component, in (-pi, pi]"),
+    "phase_status": ("1", "whether the component is more than rounding, and so has a phase"),
     "phase_slope": ("mrad/nm", "phase slope of the strongest component, or of the estimator"),
     "phase_slope_standard_deviation": ("mrad/nm", "scatter of the phase slope about its mean"),
     "predicted_phase_slope": ("mrad/nm", "predicted phase slope, n_neuron (k_min + k_max)"),
@@ -55,6 +56,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
         "scatter of the phase slope about that of a spectrum cos(2ndk)",
     ),
     "status": ("1", "whether the fit has a peak"),
+    "strongest_component": ("1", "strongest component of the Fourier transform"),
     "wavenumber": ("um-1", "wavenumber in vacuum, 2 pi / wavelength"),
     "width": ("um", "standard deviation of the Gaussian"),
     # the stability matrix; its bound is max(1e-9, 8 ε × condition number)

@@ -13,8 +13,8 @@ from octsim.config.derive import merge
 from octsim.config.messages import explain
 from octsim.config.models import Config
 
-SCHEMA = 1
-"""Of the files that this octsim writes; files of octsim 0.1.0 have no number, which counts as 0."""
+SCHEMA = 2
+"""Of the files that this octsim writes; those of 0.2.0 have 1, those of 0.1.0 none, as 0 counts."""
 _GREW: Mapping[str, tuple[str, ...]] = {
     # while files had no number; early ones lack what later stages read
     "focus_scan": ("intensity_error", "accuracy_status"),
@@ -22,6 +22,10 @@ _GREW: Mapping[str, tuple[str, ...]] = {
     "focus_law": ("status",),
     "detections": ("path_code", "rough_amplitude", "missing_field", "accuracy_status"),
     "spectra": ("intensity_error", "accuracy_status"),
+}
+_RENAMED: Mapping[str, Mapping[str, str]] = {
+    # up to schema 1 it had the name of a dimension, which broke selection by label
+    "phase_slope": {"component": "strongest_component"},
 }
 
 
@@ -94,6 +98,13 @@ def upgraded(dataset: xr.Dataset, path: Path) -> xr.Dataset:
     missing = [n for n in _GREW.get(dataset.attrs["stage"], ()) if n not in dataset.variables]
     if missing:
         raise _refused(path, by, f"it lacks {', '.join(missing)}")
+    renamed = {
+        old: new
+        for old, new in _RENAMED.get(dataset.attrs["stage"], {}).items()
+        if old in dataset.variables
+    }
+    # of the name of a dimension, it was read as a coordinate
+    dataset = dataset.rename_vars(renamed).reset_coords(list(renamed.values()))
     return dataset.assign_attrs(config=json.dumps(config), schema_version=SCHEMA)
 
 

@@ -32,7 +32,7 @@ class _File:
                 file[name][:] = variable.values
             else:
                 file[name].assignValue(variable.values)
-        file.setncatts(attributes(layout.stage, layout.config, layout.title, layout.module))
+        file.setncatts(attributes(layout.stage, layout.config, layout.title))
 
     def create(
         self,

@@ -15,7 +15,7 @@ _PREDICTIONS = (0, (5, 2, 1, 8)), (8, (5, 2, 1, 8))
 _MOST_LETTERS = 36  # of a name in the legend
 
 
-def figure_contrast(slopes: tuple[xr.Dataset, xr.Dataset], names: tuple[str, str]) -> Figure:
+def figure_compare(slopes: tuple[xr.Dataset, xr.Dataset], names: tuple[str, str]) -> Figure:
     """Draw two runs' phase slopes with their ideal curves and predictions.
 
     Parameters
@@ -57,5 +57,5 @@ def figure_contrast(slopes: tuple[xr.Dataset, xr.Dataset], names: tuple[str, str
 
 
 def _shortened(name: str) -> str:
-    """Give the end of a name, which tells more of a path than its beginning."""
+    """Return the end of a name, which tells more of a path than its beginning."""
     return name if len(name) <= _MOST_LETTERS else "…" + name[1 - _MOST_LETTERS :]

@@ -66,7 +66,7 @@ def _numeric(slopes: xr.Dataset) -> set[str]:
 
 
 def _positions(slopes: xr.Dataset, along: str) -> tuple[Any, list[str]]:
-    """Give where to draw along an axis, and what to call the places if they are no numbers."""
+    """Return where to draw along an axis, and names of the places if they are no numbers."""
     if along in _numeric(slopes):
         return slopes[along].values, []
     count = slopes.sizes[along]

@@ -1,4 +1,4 @@
-"""Figures 10 to 12: magnitude, phase and phase slope of the components over the diameter."""
+"""The phase slope over the diameter (figure 12)."""
 
 import json
 
@@ -13,7 +13,7 @@ from octsim.figures.style import BLACK, GREEN, component_colour, label, title
 _MARKERS = ".x+1234"
 
 
-def _draw_components(
+def draw_components(
     axes: Axes, diameter: NDArray[np.float64], strongest: NDArray[np.int64], values: xr.DataArray
 ) -> None:
     """Draw each component in use: solid where it is the strongest, dotted elsewhere."""
@@ -27,40 +27,13 @@ def _draw_components(
         )  # fmt: skip
 
 
-def figure_10(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
-    """Draw the magnitude of the components over the diameter (thesis fig. 10)."""
-    figure = Figure()
-    axes = figure.subplots()
-    diameter = fourier["diameter"]
-    _draw_components(axes, diameter.values, slopes["component"].values, fourier["magnitude"])
-    axes.set_xlabel(label(diameter))
-    axes.set_ylabel(label(fourier["magnitude"], "magnitude (sum over the samples)"))
-    axes.set_title(title(slopes, "Magnitude (solid where strongest)"))
-    axes.legend()
-    return figure
-
-
-def figure_11(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
-    """Draw the unwrapped phase of the components over the diameter (thesis fig. 11)."""
-    figure = Figure()
-    axes = figure.subplots()
-    diameter = fourier["diameter"]
-    unwrapped = fourier["phase"].copy(data=np.unwrap(fourier["phase"].values, axis=0))
-    _draw_components(axes, diameter.values, slopes["component"].values, unwrapped)
-    axes.set_xlabel(label(diameter))
-    axes.set_ylabel(label(fourier["phase"], "phase, unwrapped"))
-    axes.set_title(title(slopes, "Phase (solid where strongest)"))
-    axes.legend()
-    return figure
-
-
 def figure_12(slopes: xr.Dataset) -> Figure:
     """Draw the phase slope by component, the ideal curve and the prediction (thesis fig. 12)."""
     figure = Figure()
     axes = figure.subplots()
     diameter = slopes["diameter"]
-    _draw_components(
-        axes, diameter.values, slopes["component"].values, slopes["component_phase_slope"]
+    draw_components(
+        axes, diameter.values, slopes["strongest_component"].values, slopes["component_phase_slope"]
     )
     estimator = json.loads(slopes.attrs["config"])["processing"]["estimator"]
     if estimator != "fft":

@@ -35,7 +35,7 @@ _LOOK: Any = {
 
 
 def look() -> AbstractContextManager[None]:
-    """Give the context in which figures are made and saved."""
+    """Return the context in which figures are made and saved."""
     return mpl.rc_context(_LOOK)
 
 

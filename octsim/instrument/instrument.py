@@ -11,12 +11,12 @@ from octsim.base.provenance import source_digest
 from octsim.base.threads import each
 from octsim.config.derive import parts_of
 from octsim.config.models import Config
+from octsim.config.scheme import light_keys, options_of, scheme_of
 from octsim.instrument.build import optics_of, scene_of
 from octsim.instrument.point_keys import instrument_key
 from octsim.instrument.points import Points
 from octsim.schemes.field_sum import spectrum_of
 from octsim.schemes.light import AccuracyStatus, Light, LightAt
-from octsim.schemes.table import SCHEMES, Scheme
 
 
 class Spectrum(NamedTuple):
@@ -41,19 +41,6 @@ class Brightness(NamedTuple):
     """Whether that is as asked."""
 
 
-def scheme_of(config: Config) -> Scheme:
-    """Return the scheme that a config names."""
-    return SCHEMES[config.tracing.scheme]
-
-
-def light_keys(config: Config) -> tuple[str, ...]:
-    """Return the dotted keys of a config that the light of a point depends on."""
-    return (
-        "scene", "objective", "detector", "tracing.scheme", "tracing.max_intersections",
-        *scheme_of(config).keys,
-    )  # fmt: skip
-
-
 class Instrument:
     """What a config describes: its scene, objective, detector and scheme.
 
@@ -72,7 +59,7 @@ class Instrument:
         self.wavenumber = config.spectrum.wavenumbers()
         """Evenly spaced wavenumbers, (K,), 1/µm."""
         self._points = points
-        self._options = self.scheme.chosen(config.tracing)
+        self._options = options_of(config)
 
     def nominal_depth(self, diameter: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the optical depth n_neuron · d of neurons' far sides, µm, for diameters, µm."""

@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 
 from octsim.base.errors import DatasetError
 from octsim.base.files import reason
+from octsim.config.units import known_units
 
 Array = NDArray[np.float64]
 
-SCALES: Mapping[str, Mapping[str, float]] = {
-    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6},
-    "phase": {"rad": 1.0, "mrad": 1e-3},
-    "phase_error": {"rad": 1.0, "mrad": 1e-3},
+UNITS: Mapping[str, tuple[str, ...]] = {
+    "time": ("s", "ms", "us", "µs"),
+    "phase": ("rad", "mrad"),
+    "phase_error": ("rad", "mrad"),
 }
-"""What a series holds, the units that are known of each, the first of which is the one without a
-word, and their scales."""
+"""What a series holds, and the units that may stand beside it; the first where none does."""
 LARGEST_STEP = 0.75 * np.pi
 """Between neighbouring samples, rad; beyond it no one can tell which way round a phase went."""
 _NETCDF = (".nc", ".nc4", ".cdf")
@@ -101,14 +101,12 @@ def _problem(series: Series) -> str | None:
 
 
 def _scale(path: Path, name: str, units: str | None) -> float:
-    known = SCALES[name]
-    if units is None:
-        return next(iter(known.values()))
-    if units not in known:
+    known = UNITS[name]
+    if units is not None and units not in known:
         raise DatasetError(
             f"{path}: the unit of {name} is '{units}'; the known ones are {', '.join(known)}"
         )
-    return known[units]
+    return float(known_units()[units or known[0]].size)
 
 
 def _csv(path: Path) -> dict[str, Array]:
@@ -120,7 +118,7 @@ def _csv(path: Path) -> dict[str, Array]:
     return {
         name: _scale(path, name, units[name]) * _numbers(path, name, place, rows)
         for name, place in places.items()
-        if name in SCALES
+        if name in UNITS
     }
 
 
@@ -145,7 +143,7 @@ def _netcdf(path: Path) -> dict[str, Array]:
     return {
         name: _scale(path, name, stored[name].attrs.get("units"))
         * stored[name].values.astype(float)
-        for name in SCALES
+        for name in UNITS
         if name in stored.variables
     }
 

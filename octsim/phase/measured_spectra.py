@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from octsim.base.errors import DatasetError, FileError
 from octsim.base.files import reason
-from octsim.config.units import parse_length
+from octsim.config.units import inverted, parse_length
 
 Array = NDArray[np.float64]
 
@@ -106,15 +106,12 @@ def _of_csv(path: Path) -> Measured:
 
 def _wavenumbers(along: Array, axis: str, units: str, name: str) -> Array:
     """Convert wavelengths or wavenumbers of some unit to wavenumbers in 1/µm."""
-    length = units
-    if axis == "wavenumber":
-        inverse = re.fullmatch(r"(?:(?:1|rad)\s*/\s*)(\S+)|(\S+?)\s*(?:\^|\*\*)?\s*-1", units)
-        length = next(filter(None, inverse.groups())) if inverse else "none"
-        if length == "cm":
-            raise DatasetError(
-                f"{name}: wavenumber has the unit {units!r}, by which most mean 1/λ; here it is "
-                "2π/λ: give wavelengths, or rad/um"
-            )
+    length = units if axis == "wavelength" else inverted(units)
+    if axis == "wavenumber" and length == "cm":
+        raise DatasetError(
+            f"{name}: wavenumber has the unit {units!r}, by which most mean 1/λ; here it is 2π/λ: "
+            "give wavelengths, or rad/um"
+        )
     try:
         scale = parse_length(f"1 {length}")
     except ValueError:

@@ -27,9 +27,10 @@ def _polynomial(intensity: Array, weights: Array, degree: int) -> Array:
     columns = np.polynomial.legendre.legvander(np.linspace(-1, 1, intensity.shape[-1]), degree)
     root = np.sqrt(np.abs(weights))  # those of a flat top are negative at the ends
     onto = np.linalg.pinv(columns * root[:, np.newaxis]) * root
-    # by einsum, as a product of matrices depends on how many spectra there are
-    coefficients = np.einsum("...k,pk->...p", intensity, onto)
-    fitted: Array = np.einsum("...p,kp->...k", coefficients, columns)
+    fitted = np.zeros_like(intensity)
+    # a product of matrices, or einsum, sums in an order that depends on how many spectra there are
+    for column, part in zip(columns.T, onto, strict=True):
+        fitted += (intensity * part).sum(axis=-1, keepdims=True) * column
     return fitted
 
 
@@ -60,6 +61,8 @@ def centred(intensity: Array, centre: str, window: Named = "boxcar", degree: int
     degree : int
         Of the polynomial.
     """
+    # each spectrum's samples beside each other: the order in which numpy sums hangs on that
+    intensity = np.ascontiguousarray(intensity)
     weights = window_samples(window, intensity.shape[-1])
     without: Array = intensity - _CENTRES[centre](intensity, weights, degree)
     return without
@@ -99,6 +102,20 @@ def fourier_components(intensity: Array, processing: Processing) -> NDArray[np.c
         Complex components; a spectrum cos(2ndk) has phase 2nd k_min at its first sample.
     """
     return np.fft.rfft(prepared(intensity, processing), axis=-1)
+
+
+def rounding_level(intensity: Array, processing: Processing) -> Array:
+    r"""Magnitude below which a component of spectra (..., K) holds nothing but rounding, (..., 1).
+
+    .. math:: \epsilon \log_2 K \sum_j |w_j I_j|
+
+    The error of a fast Fourier transform grows with its \log_2 K stages (Higham 2002, §24.1); the
+    samples' own rounding, and that of the level that is subtracted, are as large as one of them.
+    """
+    shaped = np.abs(windowed(np.ascontiguousarray(intensity), processing.window))
+    stages = max(1.0, float(np.log2(intensity.shape[-1])))
+    level: Array = np.finfo(float).eps * stages * shaped.sum(axis=-1, keepdims=True)
+    return level
 
 
 def optical_depths(wavenumber: Array, samples: int | None = None) -> Array:

@@ -133,27 +133,6 @@ def field_at(
 
 
 @compiled(fastmath={"contract"})
-def _fields_in_groups(
-    group: NDArray[np.int64],
-    amplitude: NDArray[np.float64],
-    optical_path_length: NDArray[np.float64],
-    groups: int,
-    first: float,
-    step: float,
-    num: int,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    real, imaginary = np.zeros((groups, num)), np.zeros((groups, num))
-    for j in range(group.size):
-        reach, p = optical_path_length[j], group[j]
-        cos, sin = amplitude[j] * np.cos(first * reach), amplitude[j] * np.sin(first * reach)
-        turn_cos, turn_sin = np.cos(step * reach), np.sin(step * reach)
-        for k in range(num):
-            real[p, k] += cos
-            imaginary[p, k] += sin
-            cos, sin = cos * turn_cos - sin * turn_sin, cos * turn_sin + sin * turn_cos
-    return real, imaginary
-
-
 def fields_in_groups(
     group: NDArray[np.int64],
     amplitude: NDArray[np.float64],
@@ -162,8 +141,10 @@ def fields_in_groups(
     first: float,
     step: float,
     num: int,
-) -> NDArray[np.complex128]:
-    """Return the sum of the fields of each group of rays at evenly spaced wavenumbers.
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the sums of the fields of groups of rays at evenly spaced wavenumbers.
+
+    By the recurrence of `intensity`, without its fresh starts: for few wavenumbers.
 
     Parameters
     ----------
@@ -180,11 +161,15 @@ def fields_in_groups(
 
     Returns
     -------
-    ndarray, shape (groups, num)
-        By the recurrence of `intensity`, without its fresh starts: for few wavenumbers.
+    real, imaginary : ndarray, shape (groups, num)
     """
-    real, imaginary = _fields_in_groups(
-        group, amplitude, optical_path_length, groups, first, step, num
-    )
-    fields: NDArray[np.complex128] = real + 1j * imaginary
-    return fields
+    real, imaginary = np.zeros((groups, num)), np.zeros((groups, num))
+    for j in range(group.size):
+        reach, p = optical_path_length[j], group[j]
+        cos, sin = amplitude[j] * np.cos(first * reach), amplitude[j] * np.sin(first * reach)
+        turn_cos, turn_sin = np.cos(step * reach), np.sin(step * reach)
+        for k in range(num):
+            real[p, k] += cos
+            imaginary[p, k] += sin
+            cos, sin = cos * turn_cos - sin * turn_sin, cos * turn_sin + sin * turn_cos
+    return real, imaginary

@@ -85,19 +85,6 @@ class Optics(NamedTuple):
     """Surfaces that one ray may meet."""
 
 
-class PointCost(NamedTuple):
-    """What the light of one point takes, typically."""
-
-    size: float
-    """Bytes that it is kept in."""
-    seconds: float
-    """Processor time to find it."""
-    paths: int
-    """Light paths in it, about."""
-    memory: float
-    """Bytes to work in, beyond those of any process."""
-
-
 Options = Mapping[str, Any]
 """Values of a scheme's own keys of the config's section ``tracing``, by their names there."""
 LightAt = Callable[[Scene, float], Light]

@@ -1,6 +1,6 @@
 """The table of schemes: how the light of a point is found. A scheme is a row here and a module.
 
-A scheme's module has the functions ``tracer``, ``field`` and ``cost``; `Scheme` says what they take
+A scheme's module has the functions ``tracer`` and ``field``; `Scheme` says what they take
 and return. Modules are imported when they are first used, so that neither a digest of sources nor a
 process that needs one scheme depends on the others.
 """
@@ -9,17 +9,19 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from octsim.schemes.cost import PointCost, of_paths, of_rays
 
 if TYPE_CHECKING:
     # the config reads this table, and needs no compiler for it
     import numpy as np
     from numpy.typing import NDArray
 
-    from octsim.schemes.light import Field, Light, LightAt, Optics, Options, PointCost
+    from octsim.schemes.light import Field, Light, LightAt, Optics, Options
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,8 @@ class Scheme:
     """Keys of the section ``tracing`` that its light depends on, besides the instrument's."""
     effort: str
     """The one of them that decides what a point takes."""
+    cost: Callable[[Options], PointCost]
+    """Returns what a point takes, typically; the same on all machines."""
     counts_rays: bool = False
     """Whether its light is a number of rays, each of which is counted."""
     controls_error: bool = False
@@ -69,11 +73,6 @@ class Scheme:
         found: Field = self._functions.field(light, wavenumber, options)
         return found
 
-    def cost(self, options: Options) -> PointCost:
-        """Return what a point takes, typically; the same on all machines."""
-        found: PointCost = self._functions.cost(options)
-        return found
-
     def rate_name(self, options: Options) -> str:
         """Name the points that take about the same."""
         return f"{self.name} {options[self.effort]}"
@@ -88,6 +87,7 @@ COUNTED_RAYS = Scheme(
     module="octsim.schemes.vogel",
     options=("rays", "min_amplitude"),
     effort="rays",
+    cost=of_rays,
     counts_rays=True,
 )
 """The thesis's: a sunflower spiral of rays, each followed through the whole tree."""
@@ -97,6 +97,7 @@ LIGHT_PATHS = Scheme(
     module="octsim.schemes.paths.scheme",
     options=("accuracy",),
     effort="accuracy",
+    cost=of_paths,
     controls_error=True,
     steepest=0.92,
     presets={

@@ -13,12 +13,8 @@ from octsim.schemes.light import (
     LightAt,
     Optics,
     Options,
-    PointCost,
 )
 from octsim.tracing.tree import trace
-
-RAY_BYTES = 32
-"""Of the four numbers that are kept of a detected ray."""
 
 
 def tracer(optics: Optics, options: Options) -> LightAt:
@@ -58,12 +54,3 @@ def field(light: Light, wavenumber: NDArray[np.float64], _options: Options) -> F
     return field_of_rays(
         light.amplitude, light.rough_amplitude, light.optical_path_length, wavenumber
     )
-
-
-def cost(options: Options) -> PointCost:
-    """Return what a point takes, by rates measured on one machine (`snakemake tradeoff`)."""
-    rays = options["rays"]
-    return PointCost(
-        size=RAY_BYTES * (1 + 0.18 * rays), seconds=1.3e-4 + 8.8e-7 * rays, paths=40,
-        memory=600.0 * rays,
-    )  # fmt: skip

@@ -11,46 +11,22 @@ from octsim.base.errors import ConfigError
 from octsim.config.derive import counting_rays
 from octsim.config.grid import axes, combinations
 from octsim.config.models import Config
-from octsim.datasets.catalog import keys_behind
-from octsim.instrument.cache import opened
-from octsim.instrument.cacheplace import cache_file
-from octsim.instrument.instrument import scheme_of
-from octsim.schemes.light import PointCost
+from octsim.config.scheme import options_of, scheme_of
+from octsim.datasets.keys import keys_behind
+from octsim.instrument.point_store import opened
+from octsim.schemes.cost import PointCost
+from octsim.stages.workload import point_cost
 
 _SUMMING = 1e-7  # s a sample, of summing, transforming and differentiating a spectrum
 _JOB_BYTES = 3e8  # of a process with its libraries, compiled code and blocks
 _SAMPLE_MEMORY = 1000.0  # bytes, of each sample of the spectra in a block
 _ENOUGH = 50  # points, to know what one takes
 _SHORT = 60.0  # s; of what takes less nothing needs to be said
-_BLOCK_BYTES = 16e6
-_BLOCK_SECONDS = 2.0
-_MOST_POINTS = 512
-
-
-def points_per_block(bytes_per_point: float, seconds_per_point: float = 0.0) -> int:
-    """Give how many points are worked on between two writes: by memory and by time, at least one.
-
-    It follows from the config alone, so that the same run gives the same file.
-    """
-    seconds = max(seconds_per_point, _BLOCK_SECONDS / _MOST_POINTS)
-    most = min(_BLOCK_BYTES / bytes_per_point, _BLOCK_SECONDS / seconds, _MOST_POINTS)
-    return max(1, int(most))
-
-
-def point_cost(config: Config) -> PointCost:
-    """Return what a point of a plain config takes.
-
-    The rates are the scheme's own, measured on one machine; what they decide, the size of blocks,
-    is to be the same on all.
-    """
-    scheme = scheme_of(config)
-    return scheme.cost(scheme.chosen(config.tracing))
 
 
 def rate_name(config: Config) -> str:
     """Name the points of a plain config: those of a name take about the same."""
-    scheme = scheme_of(config)
-    return scheme.rate_name(scheme.chosen(config.tracing))
+    return scheme_of(config).rate_name(options_of(config))
 
 
 class Cost(NamedTuple):
@@ -170,24 +146,21 @@ def expected(config: Config) -> Estimate:
     Raises
     ------
     CacheError
-        If the file of the cache is none that can be used.
+        If what the cache's name stands for is none that can be used.
     """
     try:
-        file = cache_file(config.cache.file)
+        store = opened(config.cache)
     except ConfigError:  # what is set for a cluster's jobs need not be where they are sent from
-        return estimate(config, lambda _, typical: typical)
-    if not file.exists():
-        return estimate(config, lambda _, typical: typical)
-    with opened(file, config.cache.gigabytes) as cache:
+        store = None
 
-        def measured(name: str, typical: PointCost) -> PointCost:
-            rate = cache.rates(name)
-            if rate is None or rate.points < _ENOUGH:
-                return typical
-            size, seconds = rate.bytes / rate.points, rate.cpu_seconds / rate.points
-            return typical._replace(size=size, seconds=seconds)
+    def measured(name: str, typical: PointCost) -> PointCost:
+        rate = store.rates(name) if store else None
+        if rate is None or rate.points < _ENOUGH:
+            return typical
+        size, seconds = rate.bytes / rate.points, rate.cpu_seconds / rate.points
+        return typical._replace(size=size, seconds=seconds)
 
-        return estimate(config, functools.cache(measured))
+    return estimate(config, functools.cache(measured))
 
 
 def check_budget(config: Config, cost: Cost, folder: Path) -> None:

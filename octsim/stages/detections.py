@@ -11,11 +11,12 @@ from octsim.base.errors import OctsimError
 from octsim.base.threads import each_block
 from octsim.config.grid import Combination, combinations
 from octsim.config.models import Config, FocusLine
+from octsim.config.scheme import scheme_of
 from octsim.datasets.files import flags
 from octsim.datasets.layout import Coordinate, Layout, filling
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
-from octsim.instrument.instrument import Instrument, scheme_of
+from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import LightAtPoint, Points
 from octsim.optics.detector import Outcome
 from octsim.schemes.light import AccuracyStatus, Light
@@ -58,7 +59,7 @@ def detections(
         return swept | ({"outcome": named} if counted else {})
 
     title = "Rays that reach the detector, for each diameter"
-    layout = Layout("detections", config, title, __name__, own, "diameter")
+    layout = Layout("detections", config, title, own, "diameter")
     return Stream(layout, _detected(layout, law, points or Points(), threads, share))
 
 

@@ -47,7 +47,7 @@ def focus_law(config: Config, fits: xr.Dataset) -> Stream:
         the fits.
     """
     title = "Focus of greatest intensity as a linear function of the diameter"
-    layout = Layout("focus_law", config, title, __name__, law_diameters)
+    layout = Layout("focus_law", config, title, law_diameters)
     stored = Stored(fits, "gaussian_fits", config, layout)
 
     def line(at: Combination) -> dict[str, object]:

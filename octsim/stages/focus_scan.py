@@ -52,7 +52,7 @@ def focus_scan(
 
     layout = Layout(
         "focus_scan", config, "Intensity and number of detected rays over the focus, for one "
-        "diameter", __name__, own, "focus",
+        "diameter", own, "focus",
     )  # fmt: skip
     return Stream(layout, _scanned(layout, points or Points(), threads, share))
 

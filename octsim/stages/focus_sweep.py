@@ -49,10 +49,8 @@ def focus_sweep(
             "fraction": ("fraction", law.fraction.values()),
         }
 
-    layout = Layout(
-        "focus_sweep", config, "Intensity over the focus, for the diameters of the focus law",
-        __name__, own, "diameter",
-    )  # fmt: skip
+    title = "Intensity over the focus, for the diameters of the focus law"
+    layout = Layout("focus_sweep", config, title, own, "diameter")
     return Stream(layout, _swept(layout, points or Points(), threads, share))
 
 

@@ -1,18 +1,31 @@
 """Spectra to the components of their Fourier transform (figures 9 to 11)."""
 
 from collections.abc import Iterator
+from enum import IntEnum
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from octsim.config.models import Config
+from octsim.datasets.files import flags
 from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.phase.by_config import estimator_of
-from octsim.phase.transform import fourier_components, optical_depths
-from octsim.stages.cost_estimate import points_per_block
+from octsim.phase.transform import fourier_components, optical_depths, rounding_level
+from octsim.stages.workload import points_per_block
+
+
+class PhaseStatus(IntEnum):
+    """Whether a component has a phase."""
+
+    KNOWN = 0
+    BELOW_ROUNDING = 1
+    """It holds nothing but rounding, as the constant one, whose mean is subtracted."""
+    NO_SPECTRUM = 2
+    """The spectrum is NaN, as there is no focus."""
 
 
 @Streamed
@@ -22,8 +35,8 @@ def fourier(config: Config, spectra: xr.Dataset) -> Stream:
     Returns
     -------
     Dataset
-        magnitude and phase (diameter, component), depth(component); and, of another estimator than
-        fft, estimated_phase and estimated_depth (diameter).
+        magnitude, phase and whether that is known (diameter, component), depth(component); and, of
+        another estimator than fft, estimated_phase and estimated_depth (diameter).
     """
 
     def own(config: Config) -> dict[str, Coordinate]:
@@ -35,7 +48,7 @@ def fourier(config: Config, spectra: xr.Dataset) -> Stream:
         }
 
     title = "Fourier transform of the spectrum, for each diameter"
-    layout = Layout("fourier", config, title, __name__, own, "diameter")
+    layout = Layout("fourier", config, title, own, "diameter")
     return Stream(layout, _transformed(layout, Stored(spectra, "spectra", config, layout)))
 
 
@@ -56,9 +69,13 @@ def _transformed(layout: Layout, stored: Stored) -> Iterator[Part]:
         part = stored.part(at, span)
         intensity = part["intensity"].values
         components = fourier_components(intensity, at.config.processing)
+        magnitude = np.abs(components)
+        status = _status(magnitude, rounding_level(intensity, at.config.processing))
+        phase = np.where(status == PhaseStatus.KNOWN, np.angle(components), np.nan)
         variables: dict[str, Any] = {
-            "magnitude": (dimensions, np.abs(components)),
-            "phase": (dimensions, np.angle(components)),
+            "magnitude": (dimensions, magnitude),
+            "phase": (dimensions, phase),
+            "phase_status": (dimensions, *flags(PhaseStatus, status)),
         }
         if estimates:
             if span.start == 0:
@@ -68,3 +85,9 @@ def _transformed(layout: Layout, stored: Stored) -> Iterator[Part]:
             variables["estimated_phase"] = "diameter", found.phase
             variables["estimated_depth"] = "diameter", found.depth
         yield Part(at, span.start, len(intensity), variables)
+
+
+def _status(magnitude: NDArray[np.float64], level: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return which components (D, C) are above the rounding (D, 1) of their spectra."""
+    missing = np.where(np.isnan(magnitude), PhaseStatus.NO_SPECTRUM, PhaseStatus.BELOW_ROUNDING)
+    return np.where(magnitude > level, PhaseStatus.KNOWN, missing)

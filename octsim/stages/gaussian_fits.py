@@ -110,7 +110,7 @@ def gaussian_fits(config: Config, sweep: xr.Dataset) -> Stream:
         centre, width, amplitude, offset, their standard errors, residual and status (diameter).
     """
     title = "Gaussian plus a constant, fitted to the intensity over the focus"
-    layout = Layout("gaussian_fits", config, title, __name__, law_diameters)
+    layout = Layout("gaussian_fits", config, title, law_diameters)
     stored = Stored(sweep, "focus_sweep", config, layout)
     return Stream(
         layout,

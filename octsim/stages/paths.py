@@ -14,8 +14,8 @@ from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.instrument.build import surface_names
 from octsim.schemes.field_sum import fields_in_groups
 from octsim.schemes.light import Light
-from octsim.stages.cost_estimate import point_cost, points_per_block
 from octsim.stages.detections import stored_light
+from octsim.stages.workload import point_cost, points_per_block
 from octsim.tracing.light_paths import path_name
 
 _SAMPLES = 101  # of the band, for means over it
@@ -84,7 +84,7 @@ def light_paths(config: Config, detected: xr.Dataset) -> Stream:
         return {"diameter": ("diameter", config.sweep.diameters.values())}
 
     title = "What each light path has in the spectra"
-    unnamed = Layout("paths", config, title, __name__, swept, "diameter")
+    unnamed = Layout("paths", config, title, swept, "diameter")
     stored = Stored(detected, "detections", config, unnamed)
     codes = _strongest_first(unnamed, stored)
     names = surface_names(config)
@@ -92,9 +92,7 @@ def light_paths(config: Config, detected: xr.Dataset) -> Stream:
         "path": ("path", np.array([path_name(code, names) for code in codes.tolist()], str)),
         "path_code": ("path", codes),
     }
-    layout = Layout(
-        "paths", config, title, __name__, lambda config: named | swept(config), "diameter"
-    )
+    layout = Layout("paths", config, title, lambda config: named | swept(config), "diameter")
     return Stream(layout, _shared(layout, stored, codes))
 
 
@@ -106,7 +104,7 @@ def _shared(layout: Layout, stored: Stored, codes: NDArray[np.int64]) -> Iterato
         found = []
         for light in stored_light(stored.part(at, span)):
             row = order[np.searchsorted(codes, light.path, sorter=order)]
-            found.append(_shares(light, row, codes.size, k[0], step))
+            found.append(_shares(light, row, order, k[0], step))
         variables = {
             name: (("path", "diameter"), np.stack([one[name] for one in found], axis=1))
             for name in found[0]
@@ -115,19 +113,26 @@ def _shared(layout: Layout, stored: Stored, codes: NDArray[np.int64]) -> Iterato
 
 
 def _shares(
-    light: Light, row: NDArray[np.int64], paths: int, first: float, step: float
+    light: Light, row: NDArray[np.int64], order: NDArray[np.int64], first: float, step: float
 ) -> dict[str, NDArray[Any]]:
-    """Return what each path has in one spectrum; `row` is the path's number, of each ray."""
-    fields = fields_in_groups(
+    """Return what each path has in one spectrum.
+
+    `row` is the path's number, of each ray; `order` lists the paths as they are summed, so that
+    those which only other spectra have change no bit. Real arithmetic, as the rounding of complex
+    products hangs on the processor and on a value's place in memory.
+    """
+    paths = order.size
+    real, imaginary = fields_in_groups(
         row, light.amplitude, light.optical_path_length, paths, first, step, _SAMPLES
     )
-    whole = fields.sum(axis=0)
-    intensity = float((np.abs(whole) ** 2).sum())
-    taken = (fields.conj() * whole).real.sum(axis=1)
-    middle, rays = fields[:, _SAMPLES // 2], np.bincount(row, minlength=paths)
+    whole, whole_i = real[order].sum(axis=0), imaginary[order].sum(axis=0)
+    intensity = float((whole * whole + whole_i * whole_i).sum())
+    taken = (real * whole + imaginary * whole_i).sum(axis=1)
+    middle, middle_i = (part[:, _SAMPLES // 2].copy() for part in (real, imaginary))
+    rays = np.bincount(row, minlength=paths)
     return {
-        "field_amplitude": np.abs(middle),
-        "field_phase": np.where(rays > 0, np.angle(middle), np.nan),
+        "field_amplitude": np.hypot(middle, middle_i),
+        "field_phase": np.where(rays > 0, np.arctan2(middle_i, middle), np.nan),
         "mean_optical_path_length": _mean_paths(light, row, paths),
         "share": taken / intensity if intensity > 0 else np.zeros(paths),
         "path_rays": rays,

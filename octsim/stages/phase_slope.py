@@ -25,15 +25,16 @@ def phase_slope(config: Config, transformed: xr.Dataset) -> Stream:
     Returns
     -------
     Dataset
-        phase_slope, component and ideal_phase_slope (diameter), component_phase_slope(diameter,
-        component), predicted_phase_slope, and the thesis's summary figures as scalars.
+        phase_slope, strongest_component and ideal_phase_slope (diameter),
+        component_phase_slope(diameter, component), predicted_phase_slope, and the thesis's summary
+        figures as scalars.
     """
 
     def own(config: Config) -> dict[str, Coordinate]:
         return {"diameter": ("diameter", config.sweep.diameters.values())}
 
     title = "Phase slope: change of the spectrum's phase with the diameter"
-    layout = Layout("phase_slope", config, title, __name__, own, "diameter", _component_count)
+    layout = Layout("phase_slope", config, title, own, "diameter", _component_count)
     return Stream(layout, _differentiated(layout, Stored(transformed, "fourier", config, layout)))
 
 
@@ -72,7 +73,7 @@ def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[
         ideal_slope = slope_of(diameter, ideal_phases(config, spectra, diameter, k))
     return {
         "phase_slope": ("diameter", slope[inner]),
-        "component": ("diameter", found.component[inner]),
+        "strongest_component": ("diameter", found.component[inner]),
         "component_phase_slope": (("diameter", "component"), found.by_component[inner]),
         "ideal_phase_slope": ("diameter", ideal_slope[inner]),
         "ideal_component": ("diameter", ideals.component[inner]),

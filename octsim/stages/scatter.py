@@ -16,7 +16,7 @@ from octsim.base.errors import DatasetError
 from octsim.base.files import reason, whole
 from octsim.config.grid import Combination
 from octsim.config.models import Config
-from octsim.datasets.catalog import differing
+from octsim.datasets.keys import differing
 from octsim.datasets.layout import Layout
 from octsim.datasets.streams import Part, Stream, arrays
 from octsim.stages.workload import work_of

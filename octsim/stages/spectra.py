@@ -14,8 +14,8 @@ from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.instrument.instrument import Instrument
 from octsim.schemes.light import AccuracyStatus, Light
-from octsim.stages.cost_estimate import point_cost, points_per_block
 from octsim.stages.detections import stored_light
+from octsim.stages.workload import point_cost, points_per_block
 
 _ROUGH = 0.1  # of the largest intensity; an error that a slope does not survive
 
@@ -38,7 +38,7 @@ def spectra(config: Config, detected: xr.Dataset, threads: int = 1) -> Stream:
         }
 
     title = "Spectrum of the detected light, for each diameter"
-    layout = Layout("spectra", config, title, __name__, own, "diameter")
+    layout = Layout("spectra", config, title, own, "diameter")
     return Stream(layout, _summed(layout, Stored(detected, "detections", config, layout), threads))
 
 

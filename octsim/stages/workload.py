@@ -5,11 +5,35 @@ from typing import NamedTuple
 
 from octsim.config.grid import combinations
 from octsim.config.models import Config
-from octsim.datasets.catalog import keys_behind
-from octsim.stages.cost_estimate import point_cost, points_per_block
+from octsim.config.scheme import options_of, scheme_of
+from octsim.datasets.catalog import CATALOG
+from octsim.datasets.keys import keys_behind
+from octsim.schemes.cost import PointCost
 
-SCATTERED = ("focus_scan", "focus_sweep", "detections")
+SCATTERED = tuple(row.name for row in CATALOG.values() if row.traces)
 """Stages that trace, and so may take long."""
+_BLOCK_BYTES = 16e6
+_BLOCK_SECONDS = 2.0
+_MOST_POINTS = 512
+
+
+def points_per_block(bytes_per_point: float, seconds_per_point: float = 0.0) -> int:
+    """Give how many points are worked on between two writes: by memory and by time, at least one.
+
+    It follows from the config alone, so that the same run gives the same file.
+    """
+    seconds = max(seconds_per_point, _BLOCK_SECONDS / _MOST_POINTS)
+    most = min(_BLOCK_BYTES / bytes_per_point, _BLOCK_SECONDS / seconds, _MOST_POINTS)
+    return max(1, int(most))
+
+
+def point_cost(config: Config) -> PointCost:
+    """Return what a point of a plain config takes.
+
+    The rates are the scheme's own, measured on one machine; what they decide, the size of blocks,
+    is to be the same on all.
+    """
+    return scheme_of(config).cost(options_of(config))
 
 
 class Work(NamedTuple):

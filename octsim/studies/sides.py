@@ -30,7 +30,7 @@ def field_of(light: Light, rays: NDArray[np.bool_], wavenumber: float) -> comple
 
 
 def path_field(light: Light, name: str, wavenumber: float) -> complex:
-    """Sum the rays of one light path at one wavenumber (1/µm); 0 if there are none."""
+    """Return the field of one light path at one wavenumber, 1/µm; 0 without any of its rays."""
     return field_of(light, rays_on(light, name.__eq__), wavenumber)
 
 
@@ -41,7 +41,7 @@ def side_slopes(
     wavenumber: float,
     step: float,
 ) -> dict[str, float]:
-    """Differentiate the phase of each side's light over the diameter, the focus held.
+    """Return how the phase of each side's light moves with the diameter, the focus held.
 
     Parameters
     ----------

@@ -14,7 +14,8 @@ import xarray as xr
 from matplotlib.colors import to_rgb
 
 import octsim
-from octsim.archive.compare import TOLERANCE, Contrast, DatasetContrast, VariableContrast
+from octsim.archive.compare import Comparison, DatasetComparison, VariableComparison
+from octsim.archive.compare_conditions import TOLERANCE
 from octsim.archive.compare_origins import Change
 from octsim.archive.compare_points import blocks, common_points
 from octsim.archive.compare_text import lines
@@ -23,7 +24,7 @@ from octsim.cli.main import main
 from octsim.datasets.files import make as dataset_of_stage
 from octsim.datasets.files import write
 from octsim.datasets.variables import MEANINGS
-from octsim.figures.compare import figure_contrast
+from octsim.figures.compare import figure_compare
 from octsim.figures.style import look
 
 TINY: dict[str, Any] = {
@@ -83,7 +84,7 @@ def at(place: tuple[int, ...], value: Any) -> Callable[[Any], Any]:
     return change
 
 
-def differing(found: Contrast) -> dict[str, VariableContrast]:
+def differing(found: Comparison) -> dict[str, VariableComparison]:
     return {
         f"{dataset.stage}.{variable.name}": variable
         for dataset in found.datasets
@@ -92,7 +93,7 @@ def differing(found: Contrast) -> dict[str, VariableContrast]:
     }
 
 
-def dataset_of(found: Contrast, stage: str) -> DatasetContrast:
+def dataset_of(found: Comparison, stage: str) -> DatasetComparison:
     return next(one for one in found.datasets if one.stage == stage)
 
 
@@ -160,11 +161,11 @@ def test_one_bit_of_one_value_is_told_by_name_and_size(
     [
         ("fourier", "magnitude", at((1, 1), np.nan), "NaN at 1 of 297 places"),
         ("spectra", "intensity", at((0, 0), np.inf), "NaN at 1 of 576 places"),
-        ("phase_slope", "component", at((4,), 9), "1 of 9 not equal"),
+        ("phase_slope", "strongest_component", at((4,), 9), "1 of 9 not equal"),
         ("detections", "path_code", at((7,), 1), "1 of "),
         ("spectra", "accuracy_status", at((2,), 1), "1 of 9 not equal"),
         ("spectra", "intensity", lambda v: v.astype(np.float32), "type float64 -> float32"),
-        ("phase_slope", "component", lambda v: v.astype(np.int32), "type int64 -> int32"),
+        ("phase_slope", "strongest_component", lambda v: v.astype(np.int32), "type int64 -> int32"),
     ],
 )
 def test_what_has_to_be_equal_and_is_not_is_told_whatever_the_tolerance(
@@ -340,7 +341,7 @@ def test_blocks_hold_every_shared_value_once() -> None:
 
 
 def measured(cost: float, segments: float) -> xr.Dataset:
-    """Give a trade-off of two settings that cost so much."""
+    """Return a trade-off of two settings that cost so much."""
     columns: dict[str, Any] = {
         "cpu_seconds": np.array([cost, 2 * cost]),
         "peak_memory": np.array([cost, 1.0]),
@@ -353,7 +354,6 @@ def measured(cost: float, segments: float) -> xr.Dataset:
         "Cost",
         {name: ("setting", values) for name, values in columns.items()},
         {"setting": ["rays 1", "rays 2"]},
-        "octsim.studies.tradeoff.study",
     )
 
 
@@ -447,7 +447,7 @@ def test_the_figure_is_drawn_where_it_is_asked_for(
 def test_the_figure_has_both_runs_told_apart_in_grey_with_units(tiny: Path) -> None:
     slopes = octsim.read(tiny / "phase_slope.nc")
     with look():
-        figure = figure_contrast((slopes, slopes), ("one", "x" * 100))
+        figure = figure_compare((slopes, slopes), ("one", "x" * 100))
     (axes,) = figure.axes
     one, ideal, prediction, other, _, _ = axes.get_lines()
     np.testing.assert_array_equal(np.asarray(one.get_ydata()), slopes["phase_slope"].values)
@@ -461,6 +461,59 @@ def test_the_figure_has_both_runs_told_apart_in_grey_with_units(tiny: Path) -> N
     names = [text.get_text() for text in figure.legends[0].get_texts()]
     assert names[0] == "one"
     assert names[3] == "…" + 35 * "x"
+
+
+def elsewhere(dataset: xr.Dataset) -> xr.Dataset:
+    libraries = json.loads(dataset.attrs["environment"]) | {"processor": "another"}
+    return dataset.assign_attrs(environment=json.dumps(libraries))
+
+
+@pytest.mark.parametrize(
+    ("stage", "name", "within", "beyond"),
+    [
+        ("spectra", "intensity", 1e-9, 1e-7),
+        ("fourier", "magnitude", 1e-9, 1e-7),
+        ("phase_slope", "phase_slope", 1e-10, 1e-6),
+        ("phase_slope", "predicted_phase_slope", 1e-13, 1e-11),
+    ],
+)
+def test_another_environment_is_judged_by_the_condition_unless_a_tolerance_is_given(
+    stage: str, name: str, within: float, beyond: float, tiny: Path, edited: Any
+) -> None:
+    def comparisons(by: float, where: Edit) -> list[Comparison]:
+        """Compare with a value that is off, without and with a tolerance."""
+        change = replaced(name, lambda values: values * (1 + by))
+        other = edited(stage, lambda dataset: where(change(dataset)))
+        found = [octsim.compare(tiny, other, tolerance) for tolerance in (None, TOLERANCE)]
+        shutil.rmtree(other)
+        return found
+
+    key = f"{stage}.{name}"
+    near, strict = comparisons(within, elsewhere)
+    assert key not in differing(near)
+    assert (key in differing(strict)) == (within > TOLERANCE)
+    assert key in differing(comparisons(beyond, elsewhere)[0])
+    same, _ = comparisons(within, lambda dataset: dataset)
+    assert (key in differing(same)) == (within > TOLERANCE)
+
+
+def test_a_phase_that_one_side_calls_rounding_is_left_out_and_no_other_nan_is(
+    tiny: Path, edited: Any
+) -> None:
+    def old(dataset: xr.Dataset) -> xr.Dataset:
+        numbers = replaced("phase", lambda values: np.where(np.isnan(values), 1.0, values))
+        return numbers(dataset).drop_vars("phase_status")
+
+    other = edited("fourier", old)
+    for pair in ((tiny, other), (other, tiny)):
+        found = octsim.compare(*pair)
+        assert not dataset_of(found, "fourier").differs(0.0)
+        phase = next(v for v in dataset_of(found, "fourier").variables if v.name == "phase")
+        assert phase.deviation.unknown > 0
+        assert any("left out: rounding alone in one" in line for line in lines(found))
+    shutil.rmtree(other)
+    other = edited("fourier", replaced("magnitude", at((0, 1), np.nan)))
+    assert "fourier.magnitude" in differing(octsim.compare(tiny, other))
 
 
 def test_the_exit_status_tells_the_same_from_different_and_from_wrong(

@@ -8,9 +8,12 @@ from pathlib import Path
 
 import pytest
 
+import octsim
+from octsim.cli.cache import CACHE
 from octsim.cli.main import main
-from octsim.instrument.cache import PointCache
+from octsim.instrument.point_store import PointStore, describe
 
+HEAVY = {"matplotlib", "netCDF4", "numba", "numpy", "pydantic", "scipy", "snakemake", "xarray"}
 ENTRIES = [(b"%d" % number, bytes(20_000)) for number in range(100)]
 
 
@@ -21,8 +24,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def fill(file: Path) -> None:
-    with PointCache(file, 1.5) as cache:
-        cache.put(ENTRIES)
+    store = PointStore(file, 1.5)
+    for key, body in ENTRIES:
+        store.put(key, body)
 
 
 def run(*arguments: str) -> subprocess.CompletedProcess[str]:
@@ -32,11 +36,11 @@ def run(*arguments: str) -> subprocess.CompletedProcess[str]:
 
 def test_show_says_what_there_is(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     before = time.strftime("%Y-%m-%d %H:%M:%S")
-    fill(folder / ".octsim" / "points.sqlite")
+    fill(folder / ".octsim" / "points")
     assert main(["cache", "show"]) == 0
     shown = capsys.readouterr()
     first, points, size, last, oldest = shown.out.splitlines()
-    assert first == ".octsim/points.sqlite: point cache, version 1"
+    assert first == ".octsim/points: point cache, version 2"
     assert points.split() == ["points", "100"]
     assert 2.0 <= float(size.split()[1]) < 2.7
     assert size.endswith("MB of 1500 MB allowed")
@@ -46,14 +50,14 @@ def test_show_says_what_there_is(folder: Path, capsys: pytest.CaptureFixture[str
 
 
 def test_clear_frees_what_it_says(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    file = folder / "mine.sqlite"
-    fill(file)
-    before = file.stat().st_size
-    assert main(["cache", "clear", "--file", "mine.sqlite"]) == 0
-    freed = (before - file.stat().st_size) / 1e6
-    assert freed > 2.0
-    assert capsys.readouterr().out == f"mine.sqlite: {freed:.1f} MB freed\n"
-    assert main(["cache", "show", "--file", "mine.sqlite"]) == 0
+    fill(folder / "mine")
+    before = describe(folder / "mine")
+    assert before is not None
+    assert before.bytes > 2e6
+    assert main(["cache", "clear", "--file", "mine"]) == 0
+    assert capsys.readouterr().out == f"mine: {before.bytes / 1e6:.1f} MB freed\n"
+    assert list((folder / "mine").glob("??/*")) == []
+    assert main(["cache", "show", "--file", "mine"]) == 0
     assert "points     0\n" in capsys.readouterr().out
 
 
@@ -62,7 +66,7 @@ def test_no_cache_is_said_and_none_is_made(
     action: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["cache", action]) == 0
-    assert capsys.readouterr().out == ".octsim/points.sqlite: no cache yet\n"
+    assert capsys.readouterr().out == ".octsim/points: no cache yet\n"
     assert list(folder.iterdir()) == []
 
 
@@ -77,17 +81,53 @@ def test_somebody_s_file_is_refused_in_a_line_and_stays(action: str, folder: Pat
     assert (folder / "notes").read_text() == "mine"
 
 
-def test_a_damaged_cache_is_shown_as_one_and_replaced(folder: Path) -> None:
-    file = folder / "points.sqlite"
-    fill(file)
-    with file.open("r+b") as stream:
-        stream.write(b"?")
-    done = run("cache", "show", "--file", "points.sqlite")
-    assert done.returncode == 1
-    assert done.stderr.startswith("octsim: points.sqlite: damaged (")
-    assert "`octsim cache clear --file points.sqlite` makes a new one" in done.stderr
-    assert run("cache", "clear", "--file", "points.sqlite").returncode == 0
-    assert run("cache", "show", "--file", "points.sqlite").returncode == 0
+@pytest.mark.parametrize("action", ["show", "clear"])
+def test_an_old_cache_is_said_to_be_of_no_use_and_stays(
+    action: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    old = folder / ".octsim" / "points.sqlite"
+    old.parent.mkdir()
+    old.write_bytes(b"SQLite format 3\0".ljust(68, b"\0") + b"OCTP")
+    before = old.read_bytes()
+    assert main(["cache", action]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        ".octsim/points: no cache yet",
+        ".octsim/points.sqlite: a point cache of octsim 0.2.0, which is not used any more; it can "
+        "be deleted",
+    ]
+    fill(old)
+    assert main(["cache", action, "--file", ".octsim/points.sqlite"]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[0].startswith(".octsim/points.sqlite.store: ")
+    assert said[-1].endswith("it can be deleted")
+    assert old.read_bytes() == before
+
+
+def test_the_cache_without_a_name_is_that_of_a_config_without_one() -> None:
+    assert Path(octsim.Config().cache.file) == CACHE
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["--help"], ["cache", "show"], ["cache", "clear"], ["reproduce", "--help"],
+     ["verify", "none.zip"], ["unpack", "none.zip", "none"]],
+    ids=" ".join,
+)  # fmt: skip
+def test_what_computes_nothing_starts_without_what_computes(
+    arguments: list[str], folder: Path
+) -> None:
+    assert folder.is_dir()
+    code = (
+        "import sys; from octsim.cli.main import main\n"
+        "try: main(sys.argv[1:])\n"
+        "except SystemExit: pass\n"
+        "print(*sys.modules, sep='\\n', file=sys.stderr)"
+    )
+    line = [sys.executable, "-c", code, *arguments]
+    done = subprocess.run(line, capture_output=True, text=True, check=True)
+    loaded = set(done.stderr.splitlines())
+    assert "octsim.cli.main" in loaded
+    assert not loaded & (HEAVY | {"octsim.config.models"})
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ import xarray as xr
 import octsim
 from octsim.archive.pack import pack
 from octsim.archive.run_folder import run_in
+from octsim.cli.main import main
 from octsim.datasets.files import write
 from octsim.datasets.versions import SCHEMA
 
@@ -40,7 +41,7 @@ SERIES = "time,phase,phase_error\n0,0,1e-3\n1,1e-3,1e-3\n2,-1e-3,1e-3\n3,0.01,1e
 
 
 def reproduce(file: Path, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "octsim.cli.reproduce", str(file), str(folder)]
+    command = [sys.executable, "-m", "octsim", "reproduce", str(file), str(folder)]
     return subprocess.run(
         [*command, *arguments], cwd=folder.parent, capture_output=True, text=True, check=False,
         env=os.environ,
@@ -80,7 +81,7 @@ def files_in(folder: Path) -> set[str]:
 
 
 def said(done: subprocess.CompletedProcess[str]) -> str:
-    """Give the one line that a failure is, after what it is about to do."""
+    """Return the one line that a failure is, after what it is about to do."""
     assert done.returncode == 2, done.stdout + done.stderr
     assert done.stdout == ""
     *begun, line = done.stderr.splitlines()
@@ -126,14 +127,13 @@ def test_what_was_interrupted_goes_on_in_its_folder_and_no_other_does(
     tiny: Path, tmp_path: Path
 ) -> None:
     file, folder = tiny / "focus_scan.nc", tmp_path / "again"
-    command = [sys.executable, "-m", "octsim.cli.reproduce", str(file), str(folder)]
+    command = [sys.executable, "-m", "octsim", "reproduce", str(file), str(folder)]
     begun = subprocess.Popen(
         command, start_new_session=True, text=True,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE,
     )  # fmt: skip
-    until = time.monotonic() + 60
     while not (folder / "snakemake.log").exists():
-        assert time.monotonic() < until
+        assert begun.poll() is None
         time.sleep(0.05)
     os.killpg(begun.pid, signal.SIGINT)
     _, told = begun.communicate()
@@ -203,7 +203,7 @@ def test_nothing_is_written_outside_the_folder_nor_run_from_the_file(
     (outside / "series.csv").write_text(SERIES)
 
     def change(config: dict[str, Any]) -> None:
-        config["cache"] = {"file": str(outside / "points.sqlite"), "gigabytes": 1.0}
+        config["cache"] = {"file": str(outside / "points"), "gigabytes": 1.0}
         config["expansion"]["series"] = str(outside / "series.csv")
 
     def edit(dataset: xr.Dataset) -> None:
@@ -219,7 +219,7 @@ def test_nothing_is_written_outside_the_folder_nor_run_from_the_file(
     assert all(name.startswith("again/") for name in new)
     code = files_in(ROOT / "octsim") | files_in(ROOT / "workflow")
     assert {name for name in code - before[1] if "__pycache__" not in name} == set()
-    assert (tmp_path / "again" / ".octsim" / "points.sqlite").is_file()
+    assert (tmp_path / "again" / ".octsim" / "points" / "octsim-points.json").is_file()
 
 
 @pytest.mark.parametrize(
@@ -267,11 +267,27 @@ def test_a_file_that_is_none_of_ours_is_one_line_and_nothing_is_made(
     ):
         assert message in said(reproduce(file, folder))
     assert files_in(tmp_path) == before
-    command = [sys.executable, "-m", "octsim.cli.reproduce", str(tiny)]
+    command = [sys.executable, "-m", "octsim", "reproduce", str(tiny)]
     without = subprocess.run(command, capture_output=True, text=True, check=False)
     assert "the following arguments are required: folder" in said(without)
     assert "--cores: 0 given; give 1 or more" in said(reproduce(tiny, again, "--cores", "0"))
     assert files_in(tmp_path) == before
+
+
+def test_what_reproducing_needs_and_is_not_there_is_one_line_with_its_remedy(
+    tiny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def line() -> str:
+        assert main(["reproduce", str(tiny), str(tmp_path / "again")]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        return line
+
+    with monkeypatch.context() as without:
+        without.setattr("octsim.archive.reproduce.find_spec", lambda _: None)
+        assert line() == "octsim: snakemake is not installed; run: pip install 'octsim[run]'"
+    monkeypatch.setattr("octsim.archive.reproduce.CHECKOUT", tmp_path)
+    assert line().startswith("octsim: reproduce: needs a checkout of octsim")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_run_that_fails_is_one_line_with_its_reason_and_its_log(

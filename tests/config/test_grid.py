@@ -9,15 +9,16 @@ import xarray as xr
 
 import octsim
 from octsim.base.errors import ConfigError, OctsimError
-from octsim.config.grid import axes, combinations, dimension_name, remarks, without_grid
+from octsim.config.grid import axes, combinations, remarks, without_grid
 from octsim.config.load import load_config
 from octsim.config.messages import known_keys
 from octsim.config.models import Config
-from octsim.datasets.catalog import stage_axes
+from octsim.datasets.axes import axis_name, dimension_name
+from octsim.datasets.keys import stage_axes
 from octsim.datasets.reader import Stored
 from octsim.datasets.writer import write_stream
 from octsim.schemes.light import AccuracyStatus
-from octsim.stages import cost_estimate as estimates
+from octsim.stages import workload
 from octsim.stages.phase_slope import summary
 from octsim.stages.spectra import doubts
 
@@ -62,7 +63,7 @@ def test_a_product_takes_every_value_with_every_other_the_last_key_fastest() -> 
     )
     found = [(at.config.detector.core_diameter, at.config.scene.gap) for at in combinations(config)]
     assert found == [(3.5, 0), (3.5, 0.025), (3.5, 0.05), (4.4, 0), (4.4, 0.025), (4.4, 0.05)]
-    assert [axis.name for axis in axes(config)] == ["core_diameter", "gap"]
+    assert [axis_name(axis) for axis in axes(config)] == ["core_diameter", "gap"]
 
 
 def test_zipped_keys_go_side_by_side() -> None:
@@ -256,7 +257,7 @@ def test_blocks_threads_and_order_change_no_bit(monkeypatch: pytest.MonkeyPatch)
     configs = [gridded(grid, {"tracing": {"scheme": "paths", "accuracy": 1e-2}}) for grid in grids]
     whole = run(configs[0])
     for most, config, threads in ((1, configs[0], 1), (2, configs[1], 2), (3, configs[0], 3)):
-        monkeypatch.setattr(estimates, "_MOST_POINTS", most)
+        monkeypatch.setattr(workload, "_MOST_POINTS", most)
         again = run(config, threads)
         for stage in STAGES:
             for at in combinations(config):

@@ -81,7 +81,7 @@ CONTRACT: dict[str, dict[str, tuple[str, ...]]] = {
     },
     "phase_slope": {
         "phase_slope": ("diameter",),
-        "component": ("diameter",),
+        "strongest_component": ("diameter",),
         "ideal_phase_slope": ("diameter",),
         "component_phase_slope": ("diameter", "component"),
         "predicted_phase_slope": (),

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import octsim
-from octsim.base.environment import environment
+from octsim.base.provenance import environment
 from octsim.datasets.files import write
 from octsim.datasets.versions import SCHEMA
 
@@ -45,7 +45,9 @@ def test_files_of_0_1_0_are_read_with_every_key_of_today(file: str) -> None:
     config = octsim.load_config(TINY)
     assert octsim.load_config(recorded) == config
     with xr.open_dataset(OLD / file) as stored:
-        xr.testing.assert_equal(old, stored)
+        # one variable had the name of a dimension
+        named = {"component": "strongest_component"} if "phase_slope" in file else {}
+        xr.testing.assert_equal(old.reset_coords(), stored.rename_vars(named).reset_coords())
 
 
 def test_a_stage_goes_on_from_a_file_of_0_1_0() -> None:
@@ -54,6 +56,10 @@ def test_a_stage_goes_on_from_a_file_of_0_1_0() -> None:
         config, octsim.fourier(config, octsim.read(OLD / "0.1.0/spectra.nc"))
     )
     then = octsim.read(OLD / "0.1.0/phase_slope.nc")
+    # 0.1.0 gave components of rounding alone a phase
+    known = slopes["component_phase_slope"].notnull()
+    assert known[:, 1:].all()
+    then["component_phase_slope"] = then["component_phase_slope"].where(known)
     xr.testing.assert_allclose(slopes, then, rtol=1e-9)
 
 
@@ -75,7 +81,7 @@ def rewrite(file: Path, **attributes: object) -> None:
 def test_a_file_of_a_later_octsim_is_refused_with_that(made: Path) -> None:
     rewrite(made, schema_version=SCHEMA + 1, octsim_version="9.1")
     with pytest.raises(
-        octsim.DatasetError, match=r"by octsim 9\.1, as schema 2; .* octsim 9\.1 or"
+        octsim.DatasetError, match=rf"by octsim 9\.1, as schema {SCHEMA + 1}; .* octsim 9\.1 or"
     ):
         octsim.read(made)
 
@@ -83,8 +89,8 @@ def test_a_file_of_a_later_octsim_is_refused_with_that(made: Path) -> None:
 @pytest.mark.parametrize(
     ("attributes", "message"),
     [
-        ({"schema_version": "soon"}, "as schema 2"),
-        ({"schema_version": float("inf")}, "as schema 2"),
+        ({"schema_version": "soon"}, f"as schema {SCHEMA + 1}"),
+        ({"schema_version": float("inf")}, f"as schema {SCHEMA + 1}"),
         ({"schema_version": 7, "octsim_version": "1\n\x1b[31mX"}, r"octsim 1  \[31mX, as schema"),
         ({"config": "[" * 100_000}, "it has no config"),
         ({"stage": [1, 2]}, "not octsim's dataset of the stage focus_scan"),

@@ -9,9 +9,11 @@ from matplotlib.colors import to_rgb
 
 import octsim
 from octsim.config.processing import Processing
-from octsim.figures import FIGURES
+from octsim.datasets.gallery import all_run_figures
+from octsim.figures.draw import figure_of
 from octsim.figures.style import component_colour, look, save
 
+FIGURES = all_run_figures()
 GRID = {"processing.window": ["hann", "hamming"], "processing.centre": ["mean", "midpoint"]}
 
 
@@ -52,7 +54,7 @@ def test_a_figure_is_the_same_bytes_each_time_and_has_units(
     for copy in ("a", "b"):
         with look():
             given = stages | {"phase_slope": stages["grid"]} if name == "grid" else stages
-            figure = FIGURES[name](given, Processing())
+            figure = figure_of(FIGURES[name], given, Processing())
             for form in ("png", "svg"):
                 save(figure, tmp_path / f"{copy}.{form}")
     for form in ("png", "svg"):

@@ -1,7 +1,6 @@
-"""Points come from the cache where they are kept, to the bit, and else are traced."""
+"""Points come from the store where they are kept, to the bit, and else are traced."""
 
 import random
-import sqlite3
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,8 +11,8 @@ import pytest
 import octsim
 from octsim.config.load import load_config
 from octsim.config.models import Config
-from octsim.instrument.cache import opened
 from octsim.instrument.instrument import Instrument
+from octsim.instrument.point_store import PointStore
 from octsim.instrument.points import Points
 
 SMALL: dict[str, Any] = {
@@ -29,13 +28,11 @@ PATHS: dict[str, Any] = {"tracing": {"scheme": "paths", "accuracy": 1e-2}}
 
 @pytest.fixture
 def count(tmp_path: Path) -> Callable[..., tuple[int, int]]:
-    """Trace a sweep by the one cache of a test; give how many were traced, how many found."""
+    """Trace a sweep by the one store of a test; return how many were traced, how many found."""
 
     def traced(*overlays: dict[str, Any]) -> tuple[int, int]:
-        with opened(tmp_path / "points.sqlite", 1) as cache:
-            points = Points(cache)
-            octsim.detections(load_config(SMALL, *overlays), None, 2, points)
-            points.keep()
+        points = Points(PointStore(tmp_path / "points", 1))
+        octsim.detections(load_config(SMALL, *overlays), None, 2, points)
         return points.traced, points.from_cache
 
     return traced
@@ -105,7 +102,7 @@ def test_a_code_that_changes_traces_anew(
     count: Callable[..., tuple[int, int]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert count(sweep(3)) == (3, 0)
-    monkeypatch.setattr("octsim.instrument.points.source_digest", lambda module: f"edited {module}")
+    monkeypatch.setattr("octsim.instrument.instrument.source_digest", lambda *_: "edited")
     assert count(sweep(3)) == (3, 0)
 
 
@@ -122,41 +119,49 @@ def test_a_point_depends_on_nothing_but_itself(scheme: dict[str, Any], tmp_path:
     draw = random.Random(1)
     sweep = [(draw.uniform(0.8, 2.4), draw.uniform(0.5, 1.5)) for _ in range(12)]
     alone = {point: Instrument(config).light(*point) for point in sweep}
-    with opened(tmp_path / "points.sqlite", 1) as cache:
-        for part in (sweep[:5], sweep[3:9], sweep):
-            shuffled = draw.sample(part, len(part))
-            points = Points(cache)
-            trace_at = Instrument(config, points).light
-            assert all(same(trace_at(*point), alone[point]) for point in shuffled)
-            points.keep()
+    for part in (sweep[:5], sweep[3:9], sweep):
+        shuffled = draw.sample(part, len(part))
+        points = Points(PointStore(tmp_path / "points", 1))
+        trace_at = Instrument(config, points).light
+        assert all(same(trace_at(*point), alone[point]) for point in shuffled)
     assert points.from_cache == 9
     assert points.traced == 3
 
 
-def test_a_damaged_entry_is_traced_again_and_kept(
+def test_a_damaged_point_is_traced_again_and_kept(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    config, file = load_config(SMALL), tmp_path / "points.sqlite"
+    config = load_config(SMALL)
 
     def light() -> tuple[Any, int]:
-        with opened(file, 1) as cache:
-            points = Points(cache)
-            found = Instrument(config, points).light(1.4, 0.9)
-            points.keep()
-        return found, points.traced
+        points = Points(PointStore(tmp_path / "points", 1))
+        return Instrument(config, points).light(1.4, 0.9), points.traced
 
     first, _ = light()
-    with sqlite3.connect(file) as database:
-        number, body = database.execute("SELECT number, body FROM bodies").fetchone()
-        spoilt = bytearray(body)
-        spoilt[len(body) // 2] ^= 1
-        database.execute("UPDATE bodies SET body = ? WHERE number = ?", (bytes(spoilt), number))
-    database.close()
+    (file,) = (tmp_path / "points").glob("??/*")
+    spoilt = bytearray(file.read_bytes())
+    spoilt[len(spoilt) // 2] ^= 1
+    file.write_bytes(spoilt)
     again, traced = light()
     assert traced == 1
     assert same(first, again)
     assert "damaged" in caplog.text
     assert light()[1] == 0
+
+
+def test_what_points_took_is_recorded_but_for_the_first(tmp_path: Path) -> None:
+    config, store = load_config(SMALL, sweep(60)), PointStore(tmp_path / "points", 1)
+    for _ in range(2):
+        points = Points(store)
+        octsim.detections(config, None, 2, points)
+        assert points.traced + points.from_cache == 60
+        points.keep()
+        points.keep()
+        rate = store.rates("vogel 60")
+        assert rate is not None
+        assert rate.points == 52
+        assert 0 < rate.cpu_seconds < 10
+        assert 52 * 32 < rate.bytes < 52 * 60 * 40
 
 
 def test_equal_diameters_of_two_ranges_have_the_same_bits() -> None:

@@ -1,14 +1,18 @@
 """From spectra to the phase slope: known phases come back, and the thesis's processing is met."""
 
+import json
+
 import numpy as np
 import pytest
 import reference
 
+import octsim
 from octsim.config.load import load_config
 from octsim.config.processing import Processing
 from octsim.optics.two_beams import ideal_spectra, predicted_phase_slope
 from octsim.phase.slopes import phase_slopes
 from octsim.phase.transform import centred, fourier_components, optical_depths, windowed
+from octsim.stages.fourier import PhaseStatus
 
 CONFIG = load_config()
 K = CONFIG.spectrum.wavenumbers()
@@ -80,3 +84,27 @@ def test_a_linear_phase_has_its_slope_whatever_its_wraps() -> None:
     assert np.allclose(slopes.by_component, [0, 23.14, -80.0], atol=1e-9)
     assert np.all(slopes.component == 1)
     assert np.allclose(slopes.strongest, 23.14)
+
+
+def test_a_component_of_rounding_alone_has_no_phase_and_says_so() -> None:
+    overlay = {"spectrum": {"samples": 64}, "sweep": {"diameters": {"num": 4}}}
+    config = load_config(overlay, {"sweep": {"focus": {"slope": 0.58, "intercept": "69 nm"}}})
+    spectra = octsim.spectra(config, octsim.detections(config))
+    # a whole number of oscillations has two components without a window; the rest is rounding
+    pure = 2 + np.cos(2 * np.pi * 3 * np.arange(64) / 64)
+    spectra["intensity"][1] = pure
+    spectra["intensity"][2] = np.nan
+    spectra.attrs["config"] = json.dumps(
+        json.loads(spectra.attrs["config"]) | {"processing": {"window": "boxcar"}}
+    )
+    plain = load_config(config.to_dict(), {"processing": {"window": "boxcar"}})
+    found = octsim.fourier(plain, spectra)
+    status, phase = found["phase_status"], found["phase"].values
+    assert status.attrs["flag_meanings"] == "known below_rounding no_spectrum"
+    assert (np.isnan(phase) == (status.values != PhaseStatus.KNOWN)).all()
+    assert np.flatnonzero(status.values[1] == PhaseStatus.KNOWN).tolist() == [3]
+    assert (status.values[2] == PhaseStatus.NO_SPECTRUM).all()
+    for row in (0, 3):
+        assert np.flatnonzero(status.values[row]).tolist() == [0]
+    slopes = octsim.phase_slope(plain, found)
+    assert np.isnan(slopes["component_phase_slope"].values[:, 0]).all()

@@ -48,7 +48,8 @@ def test_rays_are_summed_in_groups() -> None:
     rng = np.random.default_rng(3)
     group, amplitude, path = rng.integers(0, 3, 50), rng.normal(size=50), rng.uniform(-9, 9, 50)
     first, step = 7.0, 0.02
-    fields = fields_in_groups(group, amplitude, path, 4, first, step, 100)
+    real, imaginary = fields_in_groups(group, amplitude, path, 4, first, step, 100)
+    fields = real + 1j * imaginary
     assert fields.shape == (4, 100)
     for number in range(4):
         one = amplitude[group == number], path[group == number]

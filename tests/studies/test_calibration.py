@@ -1,6 +1,5 @@
 """The calibration: derivatives, held phases, and slopes, against closed forms and other ways."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -16,16 +15,24 @@ from octsim.config.models import Config
 from octsim.datasets.files import read, write
 from octsim.figures.calibration import calibration_figure
 from octsim.figures.style import look, save
-from octsim.instrument.instrument import Instrument
+from octsim.instrument.instrument import Instrument, Spectrum
 from octsim.optics.scene import NEURON_ON_GLASS
 from octsim.optics.two_beams import ideal_spectra, predicted_phase_slope
 from octsim.phase.derivatives import derivative, stencil, wrapped
 from octsim.phase.estimators.series import series_phases
 from octsim.phase.transform import fourier_components
 from octsim.schemes.light import AccuracyStatus, Light
+from octsim.studies.calibration import slopes
 from octsim.studies.calibration import study as calibrate
 from octsim.studies.calibration.study import calibration, interpolation_error, summary
-from octsim.studies.calibration.tolerances import PARAMETERS, drawn, moved, offsets_of, value_of
+from octsim.studies.calibration.tolerances import (
+    INDICES,
+    PARAMETERS,
+    drawn,
+    moved,
+    offsets_of,
+    value_of,
+)
 from octsim.studies.sides import SIDES, path_field, side_slopes
 from octsim.tracing.light_paths import path_name
 
@@ -95,20 +102,19 @@ BEND, LEAN, LAW = 3.0, -2.0, 0.58
 TABLE = np.linspace(1, 2, 8)
 
 
-def plates(config: Config) -> Callable[[float, float], tuple[Array, float, int]]:
-    """Make spectra whose phase is a formula, in an instrument's place.
+class Plates(Instrument):
+    """An instrument of spectra whose phase is a formula.
 
     A cosine over the wavenumbers as they are believed to be, of the frequency that the estimator
     holds, with the phase 2nd k_m + BEND d² + LEAN z at the middle k_m of the band as it is.
     """
-    k, n = config.spectrum.wavenumbers(), config.scene.refractive_index.neuron
 
-    def at(diameter: float, focus: float) -> tuple[Array, float, int]:
+    def spectrum(self, diameter: float, focus: float) -> Spectrum:
+        k, n = self.wavenumber, self.config.scene.refractive_index.neuron
         held = TABLE[np.abs(TABLE - diameter).argmin()]
         phase = n * diameter * (k[0] + k[-1]) + BEND * diameter**2 + LEAN * focus
-        return 2 + np.cos(2 * N * held * (K - (K[0] + K[-1]) / 2) + phase), 1e-12, 0
-
-    return at
+        intensity = 2 + np.cos(2 * N * held * (K - (K[0] + K[-1]) / 2) + phase)
+        return Spectrum(intensity, 1e-12, AccuracyStatus.REACHED)
 
 
 def asked(**overlay: object) -> Config:
@@ -117,10 +123,11 @@ def asked(**overlay: object) -> Config:
     )
 
 
+@pytest.mark.trial
 def test_plates_have_the_slopes_and_sensitivities_of_their_formula(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(calibrate, "spectrometer", plates)
+    monkeypatch.setattr(slopes, "Instrument", Plates)
     config = asked(diameters={"num": 8})
     table = calibration(config)
     d, middle = table["diameter"].values, (K[0] + K[-1]) / 2
@@ -144,7 +151,7 @@ def test_plates_have_the_slopes_and_sensitivities_of_their_formula(
 
 
 def test_the_standard_error_is_the_budgets_quadrature(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(calibrate, "spectrometer", plates)
+    monkeypatch.setattr(slopes, "Instrument", Plates)
     none = dict.fromkeys(("diameter", "gap", "focus", "detector_radius"), "0 nm")
     none |= {"wavelength_min": "0 nm", "wavelength_max": "0 nm"}
     zero = {"glass": 0.0, "water": 0.0, "numerical_aperture": 0.0}
@@ -196,13 +203,12 @@ def test_the_light_of_a_plates_side_has_the_phase_of_its_path() -> None:
 def test_many_counted_rays_and_a_larger_step_give_the_same_slope(calibrated: xr.Dataset) -> None:
     one = calibrated.isel(diameter=3)
     diameter, focus, step = float(one["diameter"]), float(one["focus"]), 3e-3
-    rays = by_rays(load_config(), 200_000)
-    trace_at, sum_light = Instrument(rays).light, Instrument(rays).sum
-    spectra = [sum_light(trace_at(diameter + by, focus))[0] for by in (-step, step)]
+    rays = Instrument(by_rays(load_config(), 200_000))
+    spectra = rays.spectra((diameter - step, diameter + step), (focus, focus))
     u = K - K.mean()
     cos, sin = np.cos(2 * N * diameter * u), np.sin(2 * N * diameter * u)
     terms = np.stack((cos, sin, u * cos, u * sin, np.ones_like(u), u), axis=1)
-    fitted = np.linalg.lstsq(terms, np.stack(spectra, axis=1), rcond=None)[0]
+    fitted = np.linalg.lstsq(terms, spectra.T, rcond=None)[0]
     before, after = np.arctan2(-fitted[1], fitted[0])
     slope = np.angle(np.exp(1j * (after - before))) / (2 * step)
     assert slope == pytest.approx(float(one["fixed_focus_phase_slope"]), abs=0.02)
@@ -216,15 +222,14 @@ def test_a_sensitivity_is_what_another_calibration_finds(
 ) -> None:
     one = calibrated.isel(diameter=2)
     diameter, focus, step = float(one["diameter"]), float(one["focus"]), 1e-3
-    slopes = []
+    found = []
     for by in (-change, change):
-        look = Instrument(moved(calibrate.converged(Config()), {name: by}, 0.0).config).spectrum
-        spectra = np.stack([look(diameter + side, focus)[0] for side in (-step, step)])
+        other = Instrument(moved(calibrate.converged(Config()), {name: by}, 0.0).config)
+        spectra = other.spectra((diameter - step, diameter + step), (focus, focus))
         before, after = series_phases(spectra, K, N * diameter, FITTED)
-        slopes.append(wrapped(after - before) / (2 * step))
-    per = 1.0 if name in calibrate.INDICES else 1e3
-    found = float(one[f"{name}_sensitivity"]) * per
-    assert (slopes[1] - slopes[0]) / (2 * change) == pytest.approx(found, rel=0.02)
+        found.append(wrapped(after - before) / (2 * step))
+    stated = float(one[f"{name}_sensitivity"]) * (1.0 if name in INDICES else 1e3)
+    assert (found[1] - found[0]) / (2 * change) == pytest.approx(stated, rel=0.02)
 
 
 def test_the_finite_differences_of_the_budget_agree(calibrated: xr.Dataset) -> None:

@@ -1,255 +1,82 @@
-"""Causes of the slope's scatter: each does what it is known to do, and their parts add up."""
+"""The dataset of the spike and of the scatter: its numbers are the run's, and it is drawn."""
 
-import itertools
+from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
-import reference
-from numpy.typing import NDArray
-from scipy.optimize import brentq
+import xarray as xr
 
 import octsim
-from octsim.base.errors import OctsimError
-from octsim.config.derive import by_accuracy
 from octsim.config.load import load_config
-from octsim.config.models import FocusLine, Processing
-from octsim.optics.two_beams import predicted_phase_slope
-from octsim.phase.derivatives import phase_derivative
-from octsim.phase.slopes import phase_slopes
-from octsim.phase.transform import fourier_components
-from octsim.studies.causes.beat import Fields, Parts, fields_at, parts
-from octsim.studies.causes.beat_slope import beat_slopes
-from octsim.studies.causes.switches import (
-    ALL,
-    Causes,
-    Reading,
-    Stencil,
-    every_slope,
-    neighbours,
-    shapley,
-    share,
-    signal,
-    slopes,
-)
+from octsim.config.models import Config
+from octsim.datasets.files import read, write
+from octsim.figures.causes import FIGURES
+from octsim.figures.style import look, save
+from octsim.studies.causes.study import causes, summary
+from octsim.studies.causes.switches import CAUSES
 
-Array = NDArray[np.float64]
-LINE = {"slope": 0.58, "intercept": "64 nm"}
-CONFIG = load_config({"sweep": {"focus": LINE}})
-K = CONFIG.spectrum.wavenumbers()
-N = CONFIG.scene.refractive_index.neuron
-PREDICTED = predicted_phase_slope(N, float(K[0]), float(K[-1]))
-DIAMETER = np.linspace(1, 2, 151)
-READING = Reading(Processing(), N, DIAMETER, K)
-STEP = 1e-5
-UNIT = (K - K[0]) / (K[-1] - K[0])
+SMALL = load_config({
+    "sweep": {
+        "diameters": {"start": "1.1 um", "stop": "1.2 um", "num": 16},
+        "focus": {"slope": 0.58, "intercept": "64 nm"},
+    },
+})  # fmt: skip
 
 
-def plates(diameter: Array, amplitude: Array | float = 1.0, still: Array | float = 2.0) -> Parts:
-    """Give spectra amplitude(k) cos(2ndk) + still(k)."""
-    beat = amplitude * np.exp(2j * N * np.outer(diameter, K))
-    return Parts(beat, np.broadcast_to(still, beat.shape), np.zeros(beat.shape))
+@pytest.fixture(scope="module")
+def found() -> xr.Dataset:
+    return causes(SMALL, threads=2)
 
 
-def at_point(
-    diameter: Array, amplitude: Array | float = 1.0, still: Array | float = 2.0
-) -> Stencil:
-    below, at, above = (plates(diameter + o, amplitude, still) for o in (-STEP, 0, STEP))
-    return Stencil(below, at, above, np.full(diameter.size, 2 * STEP))
-
-
-def test_without_causes_two_plates_have_the_predicted_slope_at_any_step() -> None:
-    for stencil in (at_point(DIAMETER), neighbours(plates(DIAMETER), DIAMETER)):
-        assert slopes(stencil, frozenset(), READING) == pytest.approx(PREDICTED, abs=1e-6)
-    # nor do bins scatter by themselves: a pure exponential's phase is that of the band's middle
-    assert slopes(at_point(DIAMETER), frozenset({"bins"}), READING) == pytest.approx(
-        PREDICTED, abs=1e-6
-    )
-    assert slopes(at_point(DIAMETER), frozenset({"image"}), READING).std() > 0.1
-
-
-def test_with_all_causes_the_slope_is_the_package_s_and_the_literal_one() -> None:
-    swept = plates(DIAMETER, 1 - 0.2 * UNIT, 2 + 0.3 * UNIT**2)
-    found = slopes(neighbours(swept, DIAMETER), ALL, READING)
-    components = fourier_components(swept.intensity(), READING.processing)
-    stage = phase_slopes(DIAMETER, np.abs(components), np.angle(components)).strongest
-    assert np.allclose(found, stage, atol=1e-9)
-    literal = reference.phase_slopes(swept.intensity(), DIAMETER.tolist())
-    assert np.allclose(found, literal.slope, atol=1e-8)
-
-
-def test_a_cause_that_spectra_do_not_have_changes_nothing() -> None:
-    # nothing but a level stands still, there is no other light, and both rays are the same
-    stencil = at_point(DIAMETER, 1 - 0.2 * UNIT)
-    values = every_slope(lambda _: stencil, READING)
-    for present, cause in itertools.product(values, ("envelope", "paths", "rays", "step")):
-        assert np.allclose(values[present], values[present - {cause}], atol=1e-8)
-    assert np.abs(values[ALL] - values[ALL - {"centre"}]).max() > 0.1
-    assert np.abs(values[ALL] - values[ALL - {"image"}]).max() > 0.1
-
-
-def test_switching_off_takes_out_just_what_it_says() -> None:
-    some = plates(DIAMETER[:5], 1 - 0.2 * UNIT, 2 + 0.3 * UNIT)
-    some = some._replace(rest=0.01 * np.cos(4 * N * np.outer(DIAMETER[:5], K)))
-    window = np.hamming(K.size) / np.hamming(K.size).sum()
-    intensity = some.intensity()
-    middle = (intensity.max(axis=1) + intensity.min(axis=1)) / 2
-    processing = READING.processing
-    whole = signal(some, ALL, processing)
-    assert np.allclose(whole, (intensity - middle[:, None]) * window, atol=1e-16)
-    off = whole - signal(some, ALL - {"centre"}, processing)
-    assert np.allclose(off, ((some.still @ window) - middle)[:, None] * window, atol=1e-16)
-    fixed: Causes = ALL - {"centre"}  # the midpoint would move with what is taken out
-    taken = {
-        "image": some.beat.conj() / 2,
-        "paths": some.rest,
-        "envelope": some.still - (some.still @ window)[:, None],
-    }
-    for cause, part in taken.items():
-        off = signal(some, fixed, processing) - signal(some, fixed - {cause}, processing)
-        assert np.allclose(off, part * window, atol=1e-16), cause
-
-
-def test_a_maximum_that_leaves_the_band_s_edge_makes_a_spike_that_the_true_level_does_not() -> None:
-    fall = 0.05
-
-    def rise(diameter: float) -> float:
-        """Give by how much an edge's intensity is above the interior maximum."""
-        x = np.linspace(0.3, 1, 200_001)
-        inside = -(1 - fall * x) * np.cos(2 * N * diameter * (K[0] + (K[-1] - K[0]) * x))
-        return float(-np.cos(2 * N * diameter * K[0]) - inside.max())
-
-    leaves = brentq(rise, 1.135, 1.16, xtol=1e-9)
-    around = leaves + np.linspace(-0.01, 0.01, 201)
-    read = READING._replace(diameter=around)
-    stencil = at_point(around, fall * UNIT - 1)
-    spiked = slopes(stencil, ALL, read)
-    jump = int(np.abs(np.diff(spiked)).argmax())
-    assert around[jump] == pytest.approx(leaves, abs=2e-4)
-    assert abs(spiked[jump + 2] - spiked[jump - 1]) > 1
-    assert np.abs(np.diff(slopes(stencil, ALL - {"centre"}, read))).max() < 0.01
-
-
-def test_parts_sum_to_the_whole_and_equal_ones_are_equal() -> None:
-    random = np.random.default_rng(3)
-    terms = {cause: random.normal(size=20) for cause in "abc"}
-    subsets = [frozenset(s) for n in range(4) for s in itertools.combinations("abc", n)]
-    # what adds up has its own terms; a product is shared by its factors alike
-    for values in (
-        {s: np.sum([terms[c] for c in s], axis=0) * np.ones(20) for s in subsets},
-        {s: terms["a"] * ({"a", "b"} <= s) + terms["c"] * ("c" in s) for s in subsets},
-        {s: random.normal(size=20) for s in subsets},
-    ):
-        part = shapley(values)
-        whole, none = values[frozenset("abc")], values[frozenset()]
-        assert np.allclose(sum(part.values()), whole - none, atol=1e-12)
-        shares = [share(p, whole) for p in (*part.values(), none)]
-        assert sum(shares) == pytest.approx(1, abs=1e-12)
-    part = shapley({s: np.sum([terms[c] for c in s], axis=0) * np.ones(20) for s in subsets})
-    assert all(np.allclose(part[c], terms[c]) for c in "abc")
-    part = shapley({s: terms["a"] * ({"a", "b"} <= s) + terms["c"] * ("c" in s) for s in subsets})
-    assert np.allclose(part["a"], terms["a"] / 2)
-    assert np.allclose(part["b"], part["a"])
-    assert np.allclose(part["c"], terms["c"])
-
-
-def test_shapley_is_the_mean_over_all_orders() -> None:
-    random = np.random.default_rng(4)
-    values = {
-        frozenset(s): random.normal(size=3)
-        for n in range(5)
-        for s in itertools.combinations("abcd", n)
-    }
-    mean = {cause: np.zeros(3) for cause in "abcd"}
-    for order in itertools.permutations("abcd"):
-        for i, cause in enumerate(order):
-            before = frozenset(order[:i])
-            mean[cause] += (values[before | {cause}] - values[before]) / 24
-    found = shapley(values)
-    assert all(np.allclose(found[c], mean[c], atol=1e-12) for c in "abcd")
-
-
-def test_a_derivative_at_a_point_has_its_closed_form_and_its_error() -> None:
-    place = np.linspace(1, 2, 11)
-
-    def phasor(offset: float) -> NDArray[np.complex128]:
-        return np.asarray(3 * np.exp(1j * (23 * (place + offset) + np.sin(5 * (place + offset)))))
-
-    exact = 23 + 5 * np.cos(5 * place)
-    found = phase_derivative(phasor, 0.02)
-    off = np.abs(found.value - exact)
-    central = np.angle(phasor(0.02) * phasor(-0.02).conj()) / 0.04
-    assert off.max() < 1e-3 * np.abs(central - exact).max()
-    assert (off <= found.error).all()
-    assert phase_derivative(phasor, 1e-3).value == pytest.approx(exact, abs=1e-9)
-
-
-@pytest.mark.parametrize("scheme", ["vogel", "paths"])
-def test_fields_and_parts_sum_to_the_spectrum_of_the_run(scheme: str) -> None:
-    config = load_config(
-        CONFIG.to_dict(), {"tracing": {"scheme": scheme}, "sweep": {"diameters": {"num": 3}}}
-    )
+def run_of(config: Config) -> xr.Dataset:
     spectra = octsim.spectra(config, octsim.detections(config))
-    diameters, foci = spectra["diameter"].values, spectra["focus"].values
-    found = fields_at(config, diameters, foci)
-    intensity, whole = spectra["intensity"].values, np.sum(found, axis=0)
-    rounding = {"vogel": 1e-11, "paths": 1e-6}[scheme] * intensity.max()
-    assert np.allclose(np.abs(whole) ** 2, intensity, rtol=0, atol=rounding)
-    assert np.allclose(parts(found).intensity(), intensity, rtol=0, atol=rounding)
-    # light that is reflected once is nearly all of it
-    once = parts(found._replace(other=np.zeros_like(found.other))).intensity()
-    assert 0 < np.abs(once - intensity).max() < 1e-3 * intensity.max()
+    return octsim.phase_slope(config, octsim.fourier(config, spectra))
 
 
-def test_parts_of_random_fields_multiply_out() -> None:
-    random = np.random.default_rng(5)
-    fields = Fields(*(random.normal(size=(3, 2, 7)) + 1j * random.normal(size=(3, 2, 7))))
-    assert np.allclose(parts(fields).intensity(), np.abs(sum(fields)) ** 2, atol=1e-13)
+def test_the_dataset_s_numbers_add_up_to_the_run_s_slope(found: xr.Dataset) -> None:
+    run = run_of(SMALL)
+    assert np.allclose(found["phase_slope"], run["phase_slope"], atol=1e-8)
+    added = found["cause_phase_slope"].sum("cause") + found["trend_phase_slope"]
+    assert np.allclose(added + found["unexplained_phase_slope"], run["phase_slope"], atol=1e-8)
+    shares = float(found["cause_share"].sum() + found["trend_share"] + found["unexplained_share"])
+    assert shares == pytest.approx(1, abs=1e-9)
+    assert (found["least_share"] <= found["cause_share"] + 1e-12).all()
+    assert (found["cause_share"] <= found["largest_share"] + 1e-12).all()
+    # the beat's slope is found twice: by its fields, and as what no cause is left of
+    none = found["trend_phase_slope"] + found["unexplained_phase_slope"]
+    assert np.allclose(found["beat_phase_slope"], none, atol=1e-3)
 
 
-def test_along_the_axis_the_beat_has_the_plates_slope() -> None:
-    # a narrow cone of rays: paths are those of the axis, whatever the focus does
-    narrow = load_config(
-        CONFIG.to_dict(), {"objective": {"numerical_aperture": 0.005}, "tracing": {"rays": 50}}
-    )
-    read = READING._replace(diameter=np.array([1.0, 1.5, 2.0]))
-    line = narrow.sweep.focus
-    assert isinstance(line, FocusLine)
-    held = line.at(read.diameter)
-    follows = beat_slopes(narrow, read, line.at)
-    stays = beat_slopes(narrow, read, lambda _: held)
-    middle = float(K[K.size // 2])
-    glass = narrow.scene.refractive_index.glass
-    assert follows.beat == pytest.approx(PREDICTED, rel=1e-4)
-    assert stays.beat == pytest.approx(PREDICTED, rel=1e-4)
-    assert stays.near == pytest.approx(0, abs=2e-3)
-    assert stays.far == pytest.approx(2 * N * middle, rel=1e-4)
-    # paths begin and end at the focus, as if all were glass
-    assert follows.near == pytest.approx(-2 * glass * line.slope * middle, rel=1e-4)
+def test_the_thesis_s_spike_is_the_midpoint_s(found: xr.Dataset) -> None:
+    assert found["spike_diameter"].item() == pytest.approx(1.15, abs=0.01)
+    place = found["spike_neighbour"].values
+    at_edge = found["spike_maximum"].values == SMALL.spectrum.wavenumbers()[0]
+    assert 0.2 < at_edge.mean() < 0.6
+    jump = int(np.abs(np.diff(found["spike_phase_slope"].values)).argmax())
+    assert at_edge[jump]
+    assert not at_edge[jump + 1]
+    assert place[jump] == pytest.approx(1.1535, abs=1e-3)
+    assert found["spike_phase_slope"].values[jump] > 25.5
+    assert np.ptp(found["spike_phase_slope_without_centre"].values) < 0.25
+    assert abs(found["phase_slope_without"].sel(cause="centre").max() - 23.6) < 0.1
+    assert found["left_without_all"] < 0.05
 
 
-def test_a_focus_that_follows_adds_what_the_focus_does() -> None:
-    config = by_accuracy(CONFIG, 1e-8)
-    read = READING._replace(diameter=np.array([1.2, 1.7]))
-    line = CONFIG.sweep.focus
-    assert isinstance(line, FocusLine)
-    held = line.at(read.diameter)
-    follows = beat_slopes(config, read, line.at)
-    stays = beat_slopes(config, read, lambda _: held)
-    weight = np.hamming(K.size) * np.exp(-2j * N * np.outer(read.diameter, K))
-
-    def by_focus(offset: float) -> NDArray[np.complex128]:
-        moved = parts(fields_at(config, read.diameter, held + offset)).beat
-        return np.asarray((moved * weight).sum(axis=1))
-
-    change = phase_derivative(by_focus, 1e-3).value
-    assert np.abs(follows.beat - stays.beat).min() > 0.3
-    assert follows.beat == pytest.approx(stays.beat + line.slope * change, abs=1e-4)
-    assert follows.far - follows.near == pytest.approx(follows.beat, rel=2e-3)
-    assert (follows.beat_error < 1e-4).all()
+def test_the_dataset_explains_itself_and_is_drawn(found: xr.Dataset, tmp_path: Path) -> None:
+    for name, variable in found.variables.items():
+        assert variable.attrs["units"], name
+        assert variable.attrs["long_name"], name
+    assert found["cause"].values.tolist() == list(CAUSES)
+    write(found, tmp_path / "causes.nc")
+    stored = read(tmp_path / "causes.nc", "causes", SMALL)
+    assert "spike at" in summary(stored)
+    for name, draw in FIGURES.items():
+        with look():
+            save(draw(stored), tmp_path / f"{name}.png")
+        assert (tmp_path / f"{name}.png").stat().st_size > 10_000
 
 
-def test_a_scene_in_which_nothing_beats_is_refused() -> None:
-    few = load_config(CONFIG.to_dict(), {"tracing": {"max_intersections": 3}})
-    with pytest.raises(OctsimError, match="far side") as said:
-        fields_at(few, np.array([1.2]), np.array([0.7]))
-    assert "\n" not in str(said.value)
+def test_the_target_has_its_name_and_is_no_part_of_a_run(planned: Callable[..., str]) -> None:
+    assert "what makes the phase slope scatter" in planned("causes")
+    assert "what makes the phase slope scatter" not in planned()

@@ -34,6 +34,7 @@ from octsim.studies.calibration.action_potential import (
 from octsim.studies.calibration.expansion import (
     LARGEST,
     expansion,
+    expansion_of_series,
     sensitivity_at,
     series_expansion,
     series_of,
@@ -218,6 +219,18 @@ def test_files_that_are_missing_or_damaged_are_refused(tmp_path: Path) -> None:
         series_of(Config())
 
 
+def test_the_series_that_a_config_names_is_the_one_that_is_expanded(
+    table: xr.Dataset, tmp_path: Path
+) -> None:
+    rows = "\n".join(f"{t},{p}" for t, p in zip(TIME, CHANGE, strict=True))
+    (tmp_path / "s.csv").write_text(f"time,phase\n{rows}\n", encoding="utf-8")
+    named = load_config({"expansion": {"series": str(tmp_path / "s.csv"), "rest": 20}})
+    found = expansion_of_series(named, table)
+    assert found.equals(series_expansion(named, read_series(tmp_path / "s.csv"), table))
+    with pytest.raises(ConfigError, match=r"expansion.series: not given"):
+        expansion_of_series(Config(), table)
+
+
 def test_a_series_becomes_a_dataset_that_explains_itself(table: xr.Dataset, tmp_path: Path) -> None:
     phase = phases(np.where(TIME < 0.02, 0.0, 100 * (TIME - 0.02)))
     phase[22] = np.nan
@@ -242,8 +255,7 @@ def test_the_phase_of_a_thicker_neuron_gives_its_thickness(
 ) -> None:
     config = load_config(LAW)
     focus, k = 0.58 * 1.4 + 0.066, config.spectrum.wavenumbers()
-    see = Instrument(converged(config)).spectrum
-    spectra = np.stack([see(1.4 + by / 1e3, focus)[0] for by in (0.0, change)])
+    spectra = Instrument(converged(config)).spectra((1.4, 1.4 + change / 1e3), (focus, focus))
     rest, moved = series_phases(
         spectra, k, 1.4 * config.scene.refractive_index.neuron, calibrate.calibrating(config)
     )

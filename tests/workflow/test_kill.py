@@ -32,7 +32,9 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, bytes], f
     return checkout.results(), time.monotonic() - began
 
 
-@pytest.mark.parametrize("seed", range(KILLS))
+@pytest.mark.parametrize(
+    "seed", [0, *(pytest.param(seed, marks=pytest.mark.trial) for seed in range(1, KILLS))]
+)
 def test_a_killed_run_resumes_to_the_same_bits(
     seed: int, whole: tuple[dict[str, bytes], float], tmp_path: Path
 ) -> None:
@@ -77,7 +79,7 @@ def test_a_results_folder_that_is_none_is_one_line(tmp_path: Path) -> None:
     assert (tmp_path / "results").read_text() == "mine"
 
 
-@pytest.mark.parametrize("damage", ["truncated", "foreign"])
+@pytest.mark.parametrize("damage", ["truncated", pytest.param("foreign", marks=pytest.mark.trial)])
 def test_a_damaged_dataset_stops_what_reads_it_and_stays(damage: str, tmp_path: Path) -> None:
     checkout = Checkout(tmp_path)
     checkout.run(TINY)

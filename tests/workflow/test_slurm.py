@@ -173,7 +173,7 @@ def test_a_scattered_stage_is_gathered_to_the_bits_of_one_job_whatever_becomes_o
     for name in ("here", "there"):
         (tmp_path / name).mkdir()
     here, there = Checkout(tmp_path / "here"), Checkout(tmp_path / "there")
-    alone = merged(GRID, {"cache": {"gigabytes": 0}})  # a node's cache outlives these tests
+    alone = merged(GRID, {"cache": {"gigabytes": 0}})  # what is stopped is to be traced again
     here.run(alone, "--cores", "2", target)
     second = "snakemake.wildcards.get('number') == '2' and not Path('waits').exists()"
     at_start(

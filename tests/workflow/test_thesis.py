@@ -47,7 +47,7 @@ def test_the_phase_slope_is_the_thesis_s(slopes: xr.Dataset) -> None:
     assert float(slopes["phase_slope_standard_deviation"]) == pytest.approx(0.25, abs=0.03)
     assert float(slopes["standard_deviation_from_ideal"]) == pytest.approx(0.22, abs=0.03)
     assert float(slopes["largest_deviation_diameter"]) == pytest.approx(1.15, abs=0.01)
-    assert np.unique(slopes["component"]).tolist() == [1, 2]
+    assert np.unique(slopes["strongest_component"]).tolist() == [1, 2]
 
 
 def test_the_plain_reading_of_the_thesis_s_law_comes_out() -> None:

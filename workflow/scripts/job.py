@@ -1,4 +1,4 @@
-"""What every job does around its stage: read the config, log, and say in one line what failed."""
+"""Every job of the workflow: makes what its rule is for, logs it, and ends with its run."""
 
 import json
 import logging
@@ -7,23 +7,15 @@ import sys
 import threading
 import time
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 from octsim.base.errors import OctsimError, OctsimWarning
 from octsim.base.files import whole
 from octsim.config.load import load_config
 from octsim.config.models import Config
+from octsim.datasets.catalog import CATALOG
 from octsim.stages.run_id import is_latest
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from octsim.datasets.streams import Stream
-    from octsim.instrument.points import Points
-    from octsim.stages.scatter import Share
 
 
 def end_with_the_run(folder: Path) -> None:
@@ -52,67 +44,70 @@ def _is_alive(process: int) -> bool:
     return True
 
 
-@contextmanager
-def job(snakemake: Any) -> Iterator[Config]:
-    """Give a job its config; log what it says; end it with one line if a user can mend it."""
-    end_with_the_run(Path(snakemake.log[0]).parent.parent)
-    logging.basicConfig(filename=snakemake.log[0], level=logging.INFO, format="%(message)s")
-    logging.captureWarnings(capture=True)
-    logging.raiseExceptions = False  # a full disk is said once, by what hits it
-    warnings.simplefilter("ignore", OctsimWarning)  # the workflow has said these once
-    try:
-        yield load_config(snakemake.config)
-    except OctsimError as error:
-        logging.error("%s", error)
-        sys.exit(f"octsim: {error}")
+def make(folder: Path, config: Config) -> None:
+    """Make the datasets of a rule, or a share of one, and the figures that go with them."""
+    from octsim.stages.job import Job, perform
+    from octsim.stages.scatter import Share
+
+    rows = tuple(row for row in CATALOG.values() if row.rule == NAME)
+    before = {name: Path(file) for name, file in snakemake.input.items() if name in CATALOG}
+    made = {row.name: Path(snakemake.output.get(row.name, snakemake.output[0])) for row in rows}
+    job = Job(
+        rows,
+        before,
+        made,
+        snakemake.threads,
+        Share(*(int(snakemake.wildcards.get(name, 1)) for name in ("number", "of"))),
+        tuple(map(Path, snakemake.input.get("shares", ()))),
+        partial(end_with_the_run, folder),
+    )
+    counts = perform(job, config)
+    if counts and snakemake.log.get("points"):
+        with whole(Path(snakemake.log.points)) as file:
+            file.write_text(json.dumps(counts) + "\n", encoding="utf-8")
+    if snakemake.output.get("figures"):
+        from octsim.datasets.gallery import drawn_with
+        from octsim.figures.draw import draw as draw_all
+
+        for row in rows:
+            draw_all(drawn_with(row.name), before | made, folder / "figures", config)
 
 
-def fitted_law(snakemake: Any, config: Config) -> "xr.Dataset | None":
-    """Read a target's focus law, where its config needs one."""
-    from octsim.datasets.files import read
+def draw(folder: Path, config: Config) -> None:
+    """Draw the figures of a run, and remove those of the config before."""
+    from octsim.datasets.gallery import all_run_figures, run_figures
+    from octsim.figures.draw import draw as draw_all
 
-    file = snakemake.input.focus_law
-    return read(file, "focus_law", config) if file else None
-
-
-def trace(snakemake: Any, config: Config, stage: "Callable[[Points, Share], Stream]") -> None:
-    """Make a stage that traces, or a job's share of it, or gather it from its shares.
-
-    What it traced and what the cache had are counted in the log of points.
-    """
-    # numba's import is not for jobs that trace nothing
-    from octsim.datasets.writer import write_stream
-    from octsim.instrument.cache import opened
-    from octsim.instrument.cacheplace import cache_file
-    from octsim.instrument.points import Points
-    from octsim.stages.progress import watched
-    from octsim.stages.scatter import WHOLE, Share, gathered, notes_of, write_share
-
-    output, shares = Path(snakemake.output[0]), [Path(file) for file in snakemake.input.shares]
-    if shares:
-        write_stream(gathered(stage(Points(), WHOLE), shares), output)
-        _count(snakemake, notes_of(shares))
-        return
-    number, of = map(int, (snakemake.wildcards.get(name, 1) for name in ("number", "of")))
-    with opened(cache_file(config.cache.file), config.cache.gigabytes) as cache:
-        whence = Points(cache)
-        stream = watched(stage(whence, Share(number, of)))
-        try:
-            if of > 1:
-                write_share(stream, Share(number, of), output, lambda: counts_of(whence))
-            else:
-                write_stream(stream, output)
-        finally:
-            whence.keep()
-    if of == 1:
-        _count(snakemake, counts_of(whence))
+    figures = run_figures(config)
+    files = {name: Path(file) for name, file in snakemake.input.items()}
+    ends = partial(end_with_the_run, folder)
+    draw_all(figures, files, folder / "figures", config, snakemake.threads, ends)
+    for stale in set(all_run_figures()) - set(figures):
+        for file in (folder / "figures").glob(f"{stale}.*"):
+            file.unlink()
 
 
-def counts_of(points: "Points") -> dict[str, int]:
-    """Say how many points a job traced, and how many the cache had."""
-    return {"points_traced": points.traced, "points_from_cache": points.from_cache}
+def archive(folder: Path, config: Config) -> None:
+    """Pack a run as one file, for a data repository."""
+    from octsim.archive.pack import pack
+
+    packed = pack(folder, config, Path(snakemake.output[0]))
+    for remark in packed.remarks:
+        logging.warning("octsim: warning: %s", remark)
+        print(f"octsim: warning: {remark}", file=sys.stderr)
+    logging.info("%s", packed)
 
 
-def _count(snakemake: Any, counts: dict[str, int]) -> None:
-    with whole(Path(snakemake.log.points)) as file:
-        file.write_text(json.dumps(counts) + "\n", encoding="utf-8")
+# not the rule's name, which is another where this workflow is a module of one of the user's
+NAME = snakemake.wildcards.get("stage", Path(snakemake.log[0]).stem)
+run = next(above for above in Path(snakemake.log[0]).parents if above.name == "logs").parent
+end_with_the_run(run)
+logging.basicConfig(filename=snakemake.log[0], level=logging.INFO, format="%(message)s")
+logging.captureWarnings(capture=True)
+logging.raiseExceptions = False  # a full disk is said once, by what hits it
+warnings.simplefilter("ignore", OctsimWarning)  # the workflow has said these once
+try:
+    {"figures": draw, "archive": archive}.get(NAME, make)(run, load_config(snakemake.config))
+except OctsimError as error:
+    logging.error("%s", error)
+    sys.exit(f"octsim: {error}")

@@ -42,6 +42,8 @@ def estimate(
     processing : Processing
         Which estimator, at which depth, with which options.
     """
+    # each spectrum's samples beside each other: the order in which numpy sums hangs on that
+    intensity = np.ascontiguousarray(intensity)
     depth = nominal
     if processing.depth == "peak":
         depth = peak_depths(intensity, wavenumber, processing)

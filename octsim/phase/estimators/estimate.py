@@ -38,3 +38,28 @@ def oscillation(wavenumber: Array, depth: Array) -> NDArray[np.complex128]:
         2j * depth[:, np.newaxis] * (wavenumber - middle(wavenumber))
     )
     return waves
+
+
+def product(one: NDArray[np.complex128], other: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """Multiply complex numbers by real arithmetic, rounded the same wherever in memory they are.
+
+    numpy's own product fuses a multiplication and an addition, or not, depending on the processor
+    and on a value's place among its neighbours.
+    """
+    found = np.empty(np.broadcast_shapes(one.shape, other.shape), complex)
+    found.real = one.real * other.real - one.imag * other.imag
+    found.imag = one.real * other.imag + one.imag * other.real
+    return found
+
+
+def at_depth(spectra: Array, wavenumber: Array, depth: Array) -> NDArray[np.complex128]:
+    r"""Transform spectra (D, K) at a depth each, (D,): :math:`\sum_j I_j e^{-2iz(k_j - k_{mid})}`.
+
+    Each sum is of one spectrum's samples, which stand beside each other; einsum would sum in pieces
+    that hang on how many spectra there are.
+    """
+    waves = oscillation(wavenumber, depth)
+    found = np.empty(depth.size, complex)
+    found.real = (spectra * waves.real).sum(axis=1)
+    found.imag = -(spectra * waves.imag).sum(axis=1)
+    return found

@@ -3,7 +3,7 @@
 import numpy as np
 
 from octsim.config.processing import Processing
-from octsim.phase.estimators.estimate import Array, Estimate, middle, oscillation
+from octsim.phase.estimators.estimate import Array, Estimate, at_depth, middle
 from octsim.phase.transform import fourier_components, optical_depths, prepared
 
 _FINER = 32
@@ -46,8 +46,7 @@ def zero_padded(
     processing : Processing
         Its centre and window.
     """
-    waves = oscillation(wavenumber, depth)
-    value = np.einsum("dk,dk->d", prepared(intensity, processing), waves.conj())
+    value = at_depth(prepared(intensity, processing), wavenumber, depth)
     return Estimate(np.angle(value), depth)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from octsim.config.processing import Processing
-from octsim.phase.estimators.estimate import Array, Estimate, middle, oscillation
+from octsim.phase.estimators.estimate import Array, Estimate, at_depth, middle
 from octsim.phase.transform import prepared
 
 _DEGREE = 4
@@ -35,8 +35,7 @@ def fringe(intensity: Array, wavenumber: Array, depth: Array, processing: Proces
         Its centre and window serve to tell which extremum is nearest.
     """
     k_mid = middle(wavenumber)
-    waves = oscillation(wavenumber, depth).conj()
-    phase = np.angle(np.einsum("dk,dk->d", prepared(intensity, processing), waves))
+    phase = np.angle(at_depth(prepared(intensity, processing), wavenumber, depth))
     # cos(2z (k − k_mid) + phase) is extreme where that is a whole number of half turns
     half_turn = np.round(phase / np.pi)
     rough = k_mid + (half_turn * np.pi - phase) / (2 * depth)

@@ -58,6 +58,8 @@ def maximum_likelihood(intensity: Array, model: Model, read_noise: float = 0.0) 
             f"{model.intensity.shape[1]} wavenumbers given for spectra of {intensity.shape[1]}; "
             f"give {_FEWEST} diameters or more, and the spectra's wavenumbers"
         )
+    # each spectrum's samples beside each other: the order in which numpy sums hangs on that
+    intensity = np.ascontiguousarray(intensity)
     extra = read_noise**2
     # each modelled spectrum as a share of its light
     share = CubicSpline(model.diameter, model.intensity / model.intensity.sum(1, keepdims=True))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from octsim.base.errors import OctsimError
 from octsim.config.processing import Processing
 from octsim.config.processing import Sinusoid as Options
-from octsim.phase.estimators.estimate import Array, Estimate, middle, oscillation, place
+from octsim.phase.estimators.estimate import Array, Estimate, middle, oscillation, place, product
 
 DARKEST = 0.02
 """Least intensity that a weight is made of, over the mean: noise may fit less than none."""
@@ -170,10 +170,14 @@ def _fitted(
     for _ in range(STEPS):
         turn = amplitude[:, :1] / np.abs(amplitude[:, :1])
         waves = _waves(wavenumber, depth, envelope)
-        along = (turn[:, np.newaxis] * waves[..., 1:]).real
+        cos, sin = waves.real, waves.imag  # by their parts, as in `product`
+        along = turn.real[:, np.newaxis] * cos[..., 1:] - turn.imag[:, np.newaxis] * sin[..., 1:]
         # amplitudes along the first one's phase
-        sloped = turn * (amplitude * turn.conj()).real
-        moved = -x * np.einsum("dkq,dq->dk", waves, sloped).imag
+        sloped = turn * product(amplitude, turn.conj()).real
+        moved = np.zeros_like(intensity)
+        for q in range(sloped.shape[1]):
+            real, imaginary = sloped.real[:, q, np.newaxis], sloped.imag[:, q, np.newaxis]
+            moved -= x * (cos[..., q] * imaginary + sin[..., q] * real)
         columns = np.concatenate(
             [_columns(waves[..., :1], envelope), along, moved[..., np.newaxis]], axis=2
         )
@@ -191,7 +195,7 @@ _FITS = {"held": _held, "fitted": _fitted}
 
 def _waves(wavenumber: Array, depth: Array, envelope: Envelope) -> NDArray[np.complex128]:
     """Give the oscillations with their amplitudes' shapes, (D, K, Q)."""
-    return oscillation(wavenumber, depth)[..., np.newaxis] * envelope.amplitude
+    return product(oscillation(wavenumber, depth)[..., np.newaxis], envelope.amplitude)
 
 
 def _columns(waves: NDArray[np.complex128], envelope: Envelope) -> Array:

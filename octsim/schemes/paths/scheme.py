@@ -1,17 +1,12 @@
 """The scheme paths, as the table of schemes takes it."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
 from octsim.optics.scene import Scene
-from octsim.schemes.light import Field, Light, LightAt, Optics, Options, PointCost
+from octsim.schemes.light import Field, Light, LightAt, Optics, Options
 from octsim.schemes.paths.integrate import integrate
 from octsim.schemes.paths.path_sum import field_of_paths
-
-RAY_BYTES = 32
-"""Of the four numbers that are kept of a weighted ray."""
 
 
 def tracer(optics: Optics, options: Options) -> LightAt:
@@ -38,13 +33,4 @@ def field(light: Light, wavenumber: NDArray[np.float64], options: Options) -> Fi
     return field_of_paths(
         light.path, light.amplitude, light.rough_amplitude, light.optical_path_length,
         light.missing, wavenumber, options["accuracy"],
-    )  # fmt: skip
-
-
-def cost(options: Options) -> PointCost:
-    """Return what a point takes, by rates measured on one machine (`snakemake tradeoff`)."""
-    digits = -math.log10(options["accuracy"])
-    return PointCost(
-        size=RAY_BYTES * 45 * 10 ** (0.18 * digits), seconds=4.7e-4 * 10 ** (0.145 * digits),
-        paths=12, memory=0.0,
     )  # fmt: skip

@@ -1,14 +1,15 @@
 """The worked example: a neuron that fires, seen and recovered (`snakemake action_potential`)."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from octsim.base.threads import each
 from octsim.config.models import Config
 from octsim.datasets.files import make
 from octsim.instrument.instrument import Instrument
+from octsim.instrument.points import Points
 from octsim.optics.two_beams import predicted_phase_slope
 from octsim.phase.derivatives import Array
 from octsim.phase.estimators.series import series_phases
@@ -16,7 +17,7 @@ from octsim.phase.measured_series import Series, change_from_rest
 from octsim.phase.noise import shot_noise
 from octsim.stages.focus_law import focus_line
 from octsim.studies.calibration.expansion import expansion
-from octsim.studies.calibration.round_trips import round_trips, trip_diameters
+from octsim.studies.calibration.round_trips import Trips, round_trips, trip_diameters
 from octsim.studies.calibration.study import by_fft, calibrating, converged
 
 DURATION = 1e-3
@@ -29,19 +30,35 @@ REST = 60
 
 
 def swelling(time: Array, largest: float) -> Array:
-    """Give the change of the diameter over time (s): a Gaussian in the middle, of `DURATION`."""
+    """Return the change of the diameter over time (s): a Gaussian in the middle, of `DURATION`."""
     middle = (time[0] + time[-1]) / 2
     pulse: Array = largest * np.exp(-4 * np.log(2) * ((time - middle) / DURATION) ** 2)
     return pulse
 
 
 def action_potential(
-    config: Config, calibration: xr.Dataset, law: xr.Dataset | None = None, threads: int = 1
+    config: Config,
+    calibration: xr.Dataset,
+    law: xr.Dataset | None = None,
+    threads: int = 1,
+    points: Points | None = None,
 ) -> xr.Dataset:
     """Watch a neuron swell, spectrum by spectrum with shot noise, and recover by how much.
 
     Each spectrum is of the neuron as it is at that time, at a focus that is held. The thesis's way
     is beside: its transform's phase over its predicted slope, n (k_min + k_max).
+
+    Parameters
+    ----------
+    config : Config
+    calibration : Dataset
+        Of the config.
+    law : Dataset, optional
+        The fitted law; needed only where ``sweep.focus`` is ``law``.
+    threads : int
+        How many spectra, and round trips, are at work at a time.
+    points : Points, optional
+        Where light that was found before is kept.
 
     Returns
     -------
@@ -55,16 +72,16 @@ def action_potential(
     OctsimError
         If the diameter is outside the calibration's.
     """
-    settings, k = config.action_potential, config.spectrum.wavenumbers()
+    settings, instrument = config.action_potential, Instrument(converged(config), points)
+    k = instrument.wavenumber
     time = INTERVAL * np.arange(SAMPLES, dtype=np.float64)
     growth = swelling(time, settings.expansion)
     line = focus_line(config, law)
     focus = line.slope * settings.diameter + line.intercept
-    look = Instrument(converged(config)).spectrum
-    grown = (settings.diameter + growth).tolist()
-    spectra = np.stack(list(each(lambda diameter: look(diameter, focus)[0], grown, threads)))
+    grown = settings.diameter + growth
+    spectra = instrument.spectra(grown, np.full(grown.size, focus), threads)
     counted = shot_noise(spectra, settings.photons, np.random.default_rng(settings.seed))
-    depth = config.scene.refractive_index.neuron * settings.diameter
+    depth = float(instrument.nominal_depth(np.array(settings.diameter)))
     phase, of_fft = (
         series_phases(counted, k, depth, processing)
         for processing in (calibrating(config), by_fft(config))
@@ -87,18 +104,14 @@ def action_potential(
             "diameter": settings.diameter,
             "focus": focus,
             "seed": settings.seed,
-            **_trips(config, calibration, law, threads),
+            **_trips(config, round_trips(config, calibration, law, threads, points)),
         },
         {"time": time, "trip_diameter": trip_diameters(config)},
-        __name__,
     )
 
 
-def _trips(
-    config: Config, calibration: xr.Dataset, law: xr.Dataset | None, threads: int
-) -> dict[str, Any]:
-    """Give what the round trips come to."""
-    trips = round_trips(config, calibration, law, threads)
+def _trips(config: Config, trips: Mapping[str, Trips]) -> dict[str, Any]:
+    """Return what the round trips come to, as variables."""
     truth, both = 1e3 * config.action_potential.expansion, trips["both"]
     dimensions = ("trip_diameter", "trial")
     return {
@@ -113,7 +126,7 @@ def _trips(
 
 
 def summary(fired: xr.Dataset) -> str:
-    """Say in one line what the example comes to."""
+    """Return what the example comes to, in one line."""
     off = fired["expansion"] - fired["true_expansion"]
     return (
         f"expansion of {float(fired['true_expansion'].max()):.4g} nm recovered to "

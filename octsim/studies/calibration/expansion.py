@@ -45,7 +45,7 @@ class Expansion(NamedTuple):
 
 
 def sensitivity_at(diameter: float, calibration: xr.Dataset) -> Sensitivity:
-    """Interpolate a calibration at a diameter (µm), by cubic splines.
+    """Return a calibration interpolated at a diameter (µm), by cubic splines.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def sensitivity_at(diameter: float, calibration: xr.Dataset) -> Sensitivity:
 def expansion(
     phase: ArrayLike, diameter: float, calibration: xr.Dataset, phase_error: ArrayLike = 0.0
 ) -> Expansion:
-    r"""Turn changes of the phase into changes of the diameter.
+    r"""Return the changes of the diameter that changes of the phase are of.
 
     The phase of a neuron that swells by δ at a fixed focus moves by
 
@@ -117,7 +117,7 @@ def expansion(
 
 
 def series_of(config: Config) -> Series:
-    """Read the series that a config names.
+    """Return the series that a config names.
 
     Raises
     ------
@@ -131,8 +131,19 @@ def series_of(config: Config) -> Series:
     return read_series(config.expansion.series)
 
 
+def expansion_of_series(config: Config, calibration: xr.Dataset) -> xr.Dataset:
+    """Return the expansions of the series that a config names; see `series_expansion`.
+
+    Raises
+    ------
+    OctsimError
+        If there is no such series, or the series or the diameter does not serve.
+    """
+    return series_expansion(config, series_of(config), calibration)
+
+
 def series_expansion(config: Config, series: Series, calibration: xr.Dataset) -> xr.Dataset:
-    """Turn a series of phases into expansions.
+    """Return the expansions of a series of phases.
 
     Returns
     -------
@@ -170,12 +181,11 @@ def series_expansion(config: Config, series: Series, calibration: xr.Dataset) ->
             **measured,
         },
         {"time": series.time},
-        __name__,
     )
 
 
 def series_in(found: xr.Dataset) -> xr.Dataset:
-    """Give the measured series that an expansion records, as `read_series` reads it from netCDF.
+    """Return the measured series that an expansion records, as `read_series` reads it from netCDF.
 
     Raises
     ------
@@ -190,7 +200,7 @@ def series_in(found: xr.Dataset) -> xr.Dataset:
 
 
 def summary(found: xr.Dataset) -> str:
-    """Say in one line what a series comes to."""
+    """Return what a series comes to, in one line."""
     sizes = np.abs(found["expansion"].values)
     at = int(np.nanargmax(sizes))
     one = found.isel(time=at)

@@ -8,6 +8,7 @@ import xarray as xr
 from octsim.base.threads import each
 from octsim.config.models import Config
 from octsim.instrument.instrument import Instrument
+from octsim.instrument.points import Points
 from octsim.phase.derivatives import Array
 from octsim.phase.estimators.series import series_phases
 from octsim.phase.measured_series import Series, change_from_rest
@@ -33,14 +34,14 @@ class Trips(NamedTuple):
     systematic_error: Array
 
     def covered(self, truth: float) -> Array:
-        """Give the fraction of trips, (D,), within their standard error, both parts together."""
+        """Return the fraction of trips, (D,), within their standard error, both parts together."""
         stated = np.hypot(self.statistical_error, self.systematic_error)
         within: Array = (np.abs(self.recovered - truth) <= stated).mean(axis=1)
         return within
 
 
 def trip_diameters(config: Config) -> Array:
-    """Give the diameters of the round trips, (D,), µm: halfway between two of the calibration's."""
+    """Return the diameters of the round trips, (D,), µm: halfway between the calibration's."""
     table = config.calibration.diameters.values()
     left = (np.array(PLACES) * (table.size - 2)).round().astype(int)
     between: Array = (table[left] + table[left + 1]) / 2
@@ -51,7 +52,7 @@ def _recover(
     config: Config, calibration: xr.Dataset, pair: Array, diameter: float,
     generator: np.random.Generator | None,
 ) -> Expansion:  # fmt: skip
-    """Recover an expansion from a spectrum at rest and one after it, (2, K); with or without noise.
+    """Return what is recovered from a spectrum at rest and one after it, (2, K), maybe with noise.
 
     The phases of the spectra at rest are all that is known of the noise.
     """
@@ -73,16 +74,19 @@ def _pair(
     focus: float,
     grown: float,
 ) -> Array:
-    at = diameter + place.diameter
-    return np.stack(
-        [instrument.spectrum(at + by, focus + place.focus).intensity for by in (0.0, grown)]
-    )
+    """Return the spectra at rest and after it, (2, K), of a neuron that grows, µm."""
+    at, height = diameter + place.diameter, focus + place.focus
+    return instrument.spectra((at, at + grown), (height, height))
 
 
 def round_trips(
-    config: Config, calibration: xr.Dataset, law: xr.Dataset | None, threads: int
+    config: Config,
+    calibration: xr.Dataset,
+    law: xr.Dataset | None,
+    threads: int,
+    points: Points | None = None,
 ) -> dict[str, Trips]:
-    """Recover ``action_potential.expansion`` many times.
+    """Return what ``action_potential.expansion`` is recovered as, many times.
 
     Returns
     -------
@@ -94,8 +98,9 @@ def round_trips(
     diameters = trip_diameters(config)
     line = focus_line(config, law)
     foci = line.at(diameters)
+    instrument = Instrument(exact, points)
     believed = [
-        _pair(Instrument(exact), Place(exact, 0.0, 0.0), diameter, focus, grown)
+        _pair(instrument, Place(exact, 0.0, 0.0), diameter, focus, grown)
         for diameter, focus in zip(diameters.tolist(), foci.tolist(), strict=True)
     ]
     seeds = np.random.SeedSequence(config.action_potential.seed).spawn(diameters.size * TRIALS)
@@ -105,7 +110,7 @@ def round_trips(
         at = number // TRIALS
         diameter, focus = float(diameters[at]), float(foci[at])
         place = drawn(exact, generator, line.slope)
-        other = _pair(Instrument(place.config), place, diameter, focus, grown)
+        other = _pair(Instrument(place.config, points), place, diameter, focus, grown)
         return [
             _recover(config, calibration, believed[at], diameter, generator)._replace(
                 systematic_error=np.zeros(())

@@ -1,7 +1,7 @@
 """The calibration: how far the phase moves when the neuron alone does (`snakemake calibration`)."""
 
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,46 +12,41 @@ from octsim.config.derive import by_accuracy, by_rays
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.datasets.files import flags, make
-from octsim.instrument.instrument import Instrument
+from octsim.instrument.points import Points
 from octsim.optics.two_beams import predicted_phase_slope
-from octsim.phase.derivatives import FRACTIONS, Array, derivative, stencil, wrapped
-from octsim.phase.estimators.series import series_phases
-from octsim.schemes.light import AccuracyStatus, Light
+from octsim.phase.derivatives import Array
+from octsim.schemes.light import AccuracyStatus
 from octsim.stages.focus_law import focus_line
-from octsim.studies.calibration.tolerances import PARAMETERS, moved, offsets_of
-from octsim.studies.sides import side_slopes
+from octsim.studies.calibration.slopes import bench_of, slopes_at
+from octsim.studies.calibration.tolerances import INDICES, PARAMETERS
 
 ACCURACY = 1e-8
 """Of the spectra: 1e-6 moves slopes over 0.1 nm by up to 2e-4 mrad/nm, this by less than 1e-5."""
 RAYS = 3000
 """The thesis's rays, whose slope over such steps is stored beside, to compare."""
-_CURVATURE_STEP = 4e-3
-
-
-class Look(NamedTuple):
-    """A spectrum to be made: an instrument, a diameter and a focus, µm."""
-
-    instrument: Instrument
-    diameter: float
-    focus: float
 
 
 def converged(config: Config) -> Config:
-    """Give the config of the same instrument, traced as accurately as small steps need."""
+    """Return the config of the same instrument, traced as accurately as small steps need."""
     return by_accuracy(config, ACCURACY)
 
 
 def calibrating(config: Config) -> Processing:
-    """Give the run's processing with the calibration's estimator."""
+    """Return the run's processing with the calibration's estimator."""
     return config.processing.model_copy(update={"estimator": config.calibration.estimator})
 
 
 def by_fft(config: Config) -> Processing:
-    """Give the run's processing with the thesis's estimator."""
+    """Return the run's processing with the thesis's estimator."""
     return config.processing.model_copy(update={"estimator": "fft"})
 
 
-def calibration(config: Config, law: xr.Dataset | None = None, threads: int = 1) -> xr.Dataset:
+def calibration(
+    config: Config,
+    law: xr.Dataset | None = None,
+    threads: int = 1,
+    points: Points | None = None,
+) -> xr.Dataset:
     """Differentiate the phase over the diameter at a fixed focus and gap, and say how surely.
 
     An action potential does not move the objective. At each diameter the focus is the law's, and
@@ -65,6 +60,8 @@ def calibration(config: Config, law: xr.Dataset | None = None, threads: int = 1)
         The fitted law; needed only where ``sweep.focus`` is ``law``.
     threads : int
         How many diameters are at work at a time.
+    points : Points, optional
+        Where light that was found before is kept.
 
     Returns
     -------
@@ -80,115 +77,24 @@ def calibration(config: Config, law: xr.Dataset | None = None, threads: int = 1)
     OctsimError
         If the law is needed and could not be fitted.
     """
-    settings, exact = config.calibration, converged(config)
-    diameters = settings.diameters.values()
-    line = focus_line(config, law)
-    foci, bench = line.at(diameters), _bench(exact, line.slope)
-    points = zip(diameters.tolist(), foci.tolist(), strict=True)
-    rows = list(each(lambda at: _measure(config, bench, *at, line.slope), points, threads))
-    column = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    return _dataset(config, diameters, column | {"focus": foci, "slope": line.slope})
-
-
-class _Bench(NamedTuple):
-    """The instrument as it is, and as it is when each parameter is moved."""
-
-    trace_at: Callable[[float, float], Light]
-    own: Instrument
-    rays: Instrument
-    offsets: dict[str, Array]
-    moved: dict[str, list[tuple[Instrument, float, float]]]
-
-
-def _bench(exact: Config, law_slope: float) -> _Bench:
-    offsets = {name: offsets_of(exact, name) for name in PARAMETERS}
-    places = {
-        name: [moved(exact, {name: by}, law_slope) for by in changes.tolist()]
-        for name, changes in offsets.items()
-    }
-    return _Bench(
-        Instrument(exact).light,
-        Instrument(exact),
-        Instrument(by_rays(exact, RAYS)),
-        offsets,
-        {
-            name: [(Instrument(place.config), place.diameter, place.focus) for place in listed]
-            for name, listed in places.items()
-        },
+    exact, line = converged(config), focus_line(config, law)
+    diameters = config.calibration.diameters.values()
+    foci = line.at(diameters)
+    processing = calibrating(config), by_fft(config)
+    bench = bench_of(exact, by_rays(exact, RAYS), processing, line.slope, points)
+    places = zip(diameters.tolist(), foci.tolist(), strict=True)
+    rows = list(each(lambda place: slopes_at(bench, *place), places, threads))
+    return make(
+        "calibration",
+        config,
+        "Change of the phase with the diameter, at a fixed focus and gap",
+        _variables(config, diameters, rows) | {"focus": ("diameter", foci), "slope": line.slope},
+        {"diameter": diameters, "parameter": list(PARAMETERS)},
     )
-
-
-def _measure(
-    config: Config, bench: _Bench, diameter: float, focus: float, law_slope: float
-) -> dict[str, Any]:
-    """Measure what the calibration holds at one diameter."""
-    k, step = config.spectrum.wavenumbers(), config.calibration.step
-    depth = config.scene.refractive_index.neuron * diameter
-    offsets = stencil(diameter, step)
-    bends = _CURVATURE_STEP * FRACTIONS
-    # two spectra of each pair, a step to each side, give the slope of one instrument
-    places = [
-        *((bench.own, bend, 0.0) for bend in bends),
-        *(place for name in PARAMETERS for place in bench.moved[name]),
-    ]
-    looks = [
-        *(Look(bench.own, diameter + by, focus) for by in offsets),
-        *(Look(bench.own, diameter + by, focus + law_slope * by) for by in offsets),
-        *(Look(bench.own, diameter, focus + by) for by in offsets),
-        *(
-            Look(at, diameter + to + by, focus + up)
-            for at, to, up in places
-            for by in (-step, step)
-        ),
-        *(Look(bench.rays, diameter + by, focus) for by in (-step, step)),
-    ]
-    spectra, errors, status = zip(
-        *(look.instrument.spectrum(*look[1:]) for look in looks), strict=True
-    )
-    stack, num = np.stack(spectra), offsets.size
-
-    def phases_of(spectra: Array, processing: Processing, *sizes: int) -> Array:
-        # what an estimator takes from the whole of a series is that of one instrument's
-        series = np.split(spectra, np.cumsum(sizes)[:-1])
-        return np.concatenate([series_phases(one, k, depth, processing) for one in series])
-
-    sizes = num, num, num, *(2 for _ in range((len(stack) - 3 * num) // 2))
-    phases = phases_of(stack, calibrating(config), *sizes)
-    of_fft = phases_of(stack[: 2 * num], by_fft(config), num, num)
-    fixed, following, focused = (
-        derivative(offsets, wrapped(part - part[num // 2]))
-        for part in np.split(phases[: 3 * num], 3)
-    )
-    fft_fixed, fft_following = (
-        derivative(offsets, wrapped(part - part[num // 2])).value for part in np.split(of_fft, 2)
-    )
-    pairs = phases[3 * num :].reshape(-1, 2)
-    slopes = wrapped(pairs[:, 1] - pairs[:, 0]) / (2 * step)
-    moved_slopes = slopes[num:-1].reshape(len(PARAMETERS), num)
-    found = {
-        name: derivative(bench.offsets[name], of_one)
-        for name, of_one in zip(PARAMETERS, moved_slopes, strict=True)
-    }
-    sides = side_slopes(bench.trace_at, diameter, focus, float((k[0] + k[-1]) / 2), step)
-    return {
-        **{f"{side}_side_phase_slope": slope for side, slope in sides.items()},
-        "fixed_focus_phase_slope": fixed.value,
-        "difference_error": fixed.error,
-        "following_phase_slope": following.value,
-        "focus_phase_slope": focused.value,
-        "fft_fixed_focus_phase_slope": fft_fixed,
-        "fft_following_phase_slope": fft_following,
-        "rays_phase_slope": slopes[-1],
-        "phase_curvature": derivative(bends, slopes[:num]).value / 1e3,  # per nm
-        "sensitivity": np.array([one.value for one in found.values()]),
-        "sensitivity_error": np.array([one.error for one in found.values()]),
-        "intensity_error": max(errors[:-2]),
-        "accuracy_status": max(status[:-2]),
-    }
 
 
 def interpolation_error(diameter: Array, slope: Array) -> Array:
-    """Give how far a cubic spline through every second point misses the others, shape (D,).
+    """Return how far a cubic spline through every second point misses the others, shape (D,).
 
     At a point of that half it is the larger of its neighbours'. The spline through all points is
     nearer than this, about 16 times.
@@ -201,56 +107,43 @@ def interpolation_error(diameter: Array, slope: Array) -> Array:
     return np.maximum(missed, np.maximum(around[:-2], around[2:]))
 
 
-def _dataset(config: Config, diameters: Array, column: dict[str, Any]) -> xr.Dataset:
+def _variables(config: Config, diameters: Array, rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """Return the variables of what is known at each diameter, with the budget of the errors."""
+    column = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    sensitivity, sensitivity_error = column.pop("sensitivity"), column.pop("sensitivity_error")
+    status = flags(AccuracyStatus, column.pop("accuracy_status"))
     tolerances = config.calibration.tolerances
     tolerance = np.array([getattr(tolerances, name) for name in PARAMETERS])
     slope = column["fixed_focus_phase_slope"]
-    sensitivity, off = column.pop("sensitivity"), column.pop("sensitivity_error")
     missed = interpolation_error(diameters, slope)
     budget = np.abs(sensitivity) * tolerance
     error = np.sqrt((budget**2).sum(axis=1) + missed**2 + column["difference_error"] ** 2)
     k = config.spectrum.wavenumbers()
-    status = ("diameter", *flags(AccuracyStatus, column.pop("accuracy_status")))
-    law_slope = column.pop("slope")
-    variables: dict[str, Any] = {
+    return {
         **{name: ("diameter", values) for name, values in column.items()},
-        "accuracy_status": status,
-        "slope": law_slope,
+        "accuracy_status": ("diameter", *status),
         "fixed_focus_phase_slope_standard_error": ("diameter", error),
         "diameter_per_phase": ("diameter", 1 / slope),
         "diameter_per_phase_standard_error": ("diameter", error / slope**2),
         "interpolation_error": ("diameter", missed),
         **{
-            f"{name}_sensitivity": ("diameter", sensitivity[:, number] * _per(name))
+            # to a length they are per µm
+            f"{name}_sensitivity": (
+                "diameter",
+                sensitivity[:, number] * (1.0 if name in INDICES else 1e-3),
+            )
             for number, name in enumerate(PARAMETERS)
         },
         "budget": (("diameter", "parameter"), budget),
-        "budget_error": (("diameter", "parameter"), off * tolerance),
+        "budget_error": (("diameter", "parameter"), sensitivity_error * tolerance),
         "predicted_phase_slope": predicted_phase_slope(
             config.scene.refractive_index.neuron, k[0], k[-1]
         ),
     }
-    return make(
-        "calibration",
-        config,
-        "Change of the phase with the diameter, at a fixed focus and gap",
-        variables,
-        {"diameter": diameters, "parameter": list(PARAMETERS)},
-        __name__,
-    )
-
-
-INDICES = ("glass", "water", "neuron", "numerical_aperture")
-"""Parameters without a unit; the others are lengths."""
-
-
-def _per(name: str) -> float:
-    """Give what turns a sensitivity to a length from per µm into per nm."""
-    return 1.0 if name in INDICES else 1e-3
 
 
 def summary(table: xr.Dataset) -> str:
-    """Say in one line what a calibration found."""
+    """Return what a calibration found, in one line."""
     slope, error = table["fixed_focus_phase_slope"], table["fixed_focus_phase_slope_standard_error"]
     largest = str(table["parameter"].values[int(table["budget"].mean("diameter").values.argmax())])
     return (

@@ -48,10 +48,12 @@ PARAMETERS: Mapping[str, Parameter] = {
     "wavelength_max": Parameter(2e-4, "spectrum.wavelength.max"),
 }
 """Each by the name of its tolerance."""
+INDICES = ("glass", "water", "neuron", "numerical_aperture")
+"""Parameters without a unit; the others are lengths."""
 
 
 def value_of(config: Config, name: str) -> float:
-    """Give what a parameter is in a config; 0 for what is no part of one."""
+    """Return what a parameter is in a config; 0 for what is no part of one."""
     if name == "detector_radius":
         return detector_of(config).radius
     part: Any = config
@@ -61,12 +63,12 @@ def value_of(config: Config, name: str) -> float:
 
 
 def offsets_of(config: Config, name: str) -> Array:
-    """Give five changes of a parameter, (5,), that leave it possible."""
+    """Return five changes of a parameter, (5,), that leave it possible."""
     return stencil(value_of(config, name), PARAMETERS[name].step, *limits(config, name))
 
 
 def limits(config: Config, name: str) -> tuple[float, float]:
-    """Give the least and the most that a parameter may be, with the others within theirs."""
+    """Return the least and the most that a parameter may be, with the others within theirs."""
     least, most = PARAMETERS[name].least, PARAMETERS[name].most
     glass, aperture = config.scene.refractive_index.glass, config.objective.numerical_aperture
     if name == "glass":
@@ -77,7 +79,10 @@ def limits(config: Config, name: str) -> tuple[float, float]:
 
 
 def moved(config: Config, changes: Mapping[str, float], law_slope: float) -> Place:
-    """Move parameters and hold the others; the focus follows only the diameter, by the law."""
+    """Return a config with parameters moved and the others held.
+
+    The focus follows only the diameter, by the law.
+    """
     diameter = changes.get("diameter", 0.0)
     focus = law_slope * diameter + changes.get("focus", 0.0)
     data, overlay = config.to_dict(), {}
@@ -94,7 +99,7 @@ def moved(config: Config, changes: Mapping[str, float], law_slope: float) -> Pla
 
 
 def drawn(config: Config, generator: np.random.Generator, law_slope: float) -> Place:
-    """Draw an instrument and a neuron from the tolerances: normal, within what is possible."""
+    """Return an instrument and a neuron drawn normally by the tolerances, as far as possible."""
     changes = {}
     for name in PARAMETERS:
         by = generator.normal(0.0, getattr(config.calibration.tolerances, name))

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from octsim.base.errors import OctsimError
 from octsim.base.threads import each
-from octsim.config.models import Config
 from octsim.instrument.instrument import Instrument
 from octsim.schemes.field_sum import field
 from octsim.schemes.light import Light
@@ -42,17 +41,17 @@ class Parts(NamedTuple):
     """What all other light adds, (D, K)."""
 
     def intensity(self) -> NDArray[np.float64]:
-        """Put the parts together, (D, K)."""
+        """Return the parts together, (D, K)."""
         whole: NDArray[np.float64] = self.beat.real + self.still + self.rest
         return whole
 
     def take(self, rows: NDArray[np.int64]) -> "Parts":
-        """Give some of the spectra."""
+        """Return some of the spectra."""
         return Parts(self.beat[rows], self.still[rows], self.rest[rows])
 
 
 def parts(fields: Fields) -> Parts:
-    """Multiply fields out to the parts of the intensity."""
+    """Return the parts of the intensity that fields multiply out to."""
     near, far, other = fields
     beat = 2 * near.conj() * far
     still = np.abs(near) ** 2 + np.abs(far) ** 2
@@ -62,7 +61,7 @@ def parts(fields: Fields) -> Parts:
 
 
 def _summed(light: Light, wavenumber: NDArray[np.float64]) -> NDArray[np.complex128]:
-    """Sum a light's rays to the fields of near and far side and all else, (3, K)."""
+    """Return the fields of near side, far side and all else, (3, K), of a light's rays."""
     near = rays_on(light, NEAR.__contains__)
     far = rays_on(light, SIDES["far"].__eq__)
     return np.stack(
@@ -74,14 +73,16 @@ def _summed(light: Light, wavenumber: NDArray[np.float64]) -> NDArray[np.complex
 
 
 def fields_at(
-    config: Config, diameters: NDArray[np.float64], foci: NDArray[np.float64], threads: int = 1
+    instrument: Instrument,
+    diameters: NDArray[np.float64],
+    foci: NDArray[np.float64],
+    threads: int = 1,
 ) -> Fields:
-    """Trace a config's instrument, and sum what comes from near side, far side and elsewhere.
+    """Return what comes from near side, far side and elsewhere, seen by an instrument.
 
     Parameters
     ----------
-    config : Config
-        Its ``sweep`` is not read.
+    instrument : Instrument
     diameters, foci : ndarray, shape (D,)
         Diameters, and a focus for each, µm.
     threads : int
@@ -92,17 +93,18 @@ def fields_at(
     OctsimError
         If no light comes back from one of the sides: nothing beats then.
     """
-    trace_at, k = Instrument(config).light, config.spectrum.wavenumbers()
-    points = list(zip(diameters.tolist(), foci.tolist(), strict=True))
-    found = Fields(
-        *np.stack(list(each(lambda p: _summed(trace_at(*p), k), points, threads)), axis=1)
-    )
+
+    def at(place: tuple[float, float]) -> NDArray[np.complex128]:
+        return _summed(instrument.light(*place), instrument.wavenumber)
+
+    places = zip(diameters.tolist(), foci.tolist(), strict=True)
+    fields = Fields(*np.stack(list(each(at, places, threads)), axis=1))
     for side in ("near", "far"):
-        dark = ~getattr(found, side).any(axis=1)
+        dark = ~getattr(fields, side).any(axis=1)
         if dark.any():
             raise OctsimError(
                 f"sweep: at a diameter of {diameters[dark][0]:.6g} um no light comes back from the "
                 f"cylinder's {side} side, so that no beat has a phase; change sweep.diameters, "
                 "sweep.focus, tracing.max_intersections or scene.refractive_index"
             )
-    return found
+    return fields

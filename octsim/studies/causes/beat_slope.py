@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.config.models import Config
+from octsim.instrument.instrument import Instrument
 from octsim.phase.derivatives import phase_derivative
 from octsim.studies.causes.beat import fields_at, parts
 from octsim.studies.causes.switches import Reading, weights
@@ -30,9 +30,9 @@ class BeatSlopes(NamedTuple):
 
 
 def beat_slopes(
-    config: Config, reading: Reading, focusing: Focusing, threads: int = 1
+    instrument: Instrument, reading: Reading, focusing: Focusing, threads: int = 1
 ) -> BeatSlopes:
-    r"""Differentiate the phases of the fields themselves, with no Fourier transform between.
+    r"""Return how the phases of the fields themselves move, with no Fourier transform between.
 
     Along the axis the far side's path grows by 2 n_neuron d and the near side's not at all, so at
     a held focus the slopes are 2 n_neuron k and 0 there; light off the axis and the phase at a
@@ -40,8 +40,8 @@ def beat_slopes(
 
     Parameters
     ----------
-    config : Config
-        The instrument; its accuracy bounds what is reached.
+    instrument : Instrument
+        Its accuracy bounds what is reached.
     reading : Reading
         Diameters (D,), wavenumbers and window.
     focusing : callable
@@ -55,10 +55,10 @@ def beat_slopes(
 
     def phasors(offset: float) -> NDArray[np.complex128]:
         moved = reading.diameter + offset
-        fields = fields_at(config, moved, focusing(moved), threads)
+        fields = fields_at(instrument, moved, focusing(moved), threads)
         beat = (parts(fields).beat * reference).sum(axis=1)
         return np.stack([beat, fields.near[:, k.size // 2], fields.far[:, k.size // 2]])
 
-    found = phase_derivative(phasors, min(STEP, float(reading.diameter.min()) / 4))
-    beat, near, far = found.value
-    return BeatSlopes(beat, near, far, found.error[0])
+    derivative = phase_derivative(phasors, min(STEP, float(reading.diameter.min()) / 4))
+    beat, near, far = derivative.value
+    return BeatSlopes(beat, near, far, derivative.error[0])

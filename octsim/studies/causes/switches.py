@@ -56,7 +56,7 @@ class Stencil(NamedTuple):
 
 
 def neighbours(swept: Parts, diameter: Array) -> Stencil:
-    """Take the spectra of a sweep's neighbouring diameters, as `numpy.gradient` does.
+    """Return the stencil of a sweep's neighbouring diameters, as `numpy.gradient` does.
 
     At the sweep's ends, which have one neighbour, the spectrum itself stands for the other.
     """
@@ -66,20 +66,20 @@ def neighbours(swept: Parts, diameter: Array) -> Stencil:
 
 
 def weights(processing: Processing, num: int) -> Array:
-    """Give the window as weights that sum to one, (K,)."""
+    """Return the window as weights that sum to one, (K,)."""
     window = windowed(np.ones(num), processing.window)
     relative: Array = window / window.sum()
     return relative
 
 
 def true_level(parts: Parts, processing: Processing) -> Array:
-    """Give the mean over the window of what does not oscillate, (D, 1)."""
+    """Return the mean over the window of what does not oscillate, (D, 1)."""
     level: Array = (parts.still @ weights(processing, parts.still.shape[1]))[:, np.newaxis]
     return level
 
 
 def signal(parts: Parts, present: Causes, processing: Processing) -> NDArray[np.complex128]:
-    """Centre and window spectra with only some of the causes present.
+    """Return spectra, centred and windowed, with only some of the causes present.
 
     Returns
     -------
@@ -99,7 +99,7 @@ def signal(parts: Parts, present: Causes, processing: Processing) -> NDArray[np.
 
 
 def strongest(prepared: NDArray[np.complex128]) -> NDArray[np.int64]:
-    """Give the strongest component (D,) of the FFT of prepared spectra (D, K), never the 0th."""
+    """Return the strongest component (D,) of the FFT of prepared spectra (D, K), not the 0th."""
     transformed = np.fft.fft(prepared)[:, : prepared.shape[1] // 2 + 1]
     component: NDArray[np.int64] = 1 + np.abs(transformed[:, 1:]).argmax(axis=1)
     return component
@@ -108,7 +108,7 @@ def strongest(prepared: NDArray[np.complex128]) -> NDArray[np.int64]:
 def _components(
     spectra: Sequence[NDArray[np.complex128]], present: Causes, reading: Reading
 ) -> list[NDArray[np.complex128]]:
-    """Take the component (D,) whose phase is read of the spectra below, at and above."""
+    """Return the component (D,) whose phase is read of the spectra below, at and above."""
     if "bins" in present:
         transformed = [np.fft.fft(s)[:, : s.shape[1] // 2 + 1] for s in spectra]
         row, component = np.arange(reading.diameter.size), strongest(spectra[1])
@@ -120,7 +120,7 @@ def _components(
 
 
 def slopes(stencil: Stencil, present: Causes, reading: Reading) -> Array:
-    """Differentiate the phase that is read of spectra with only some of the causes present.
+    """Return the slope of the phase that is read with only some of the causes present.
 
     The causes ``rays`` and ``step`` are switched by the stencil.
 
@@ -135,7 +135,7 @@ def slopes(stencil: Stencil, present: Causes, reading: Reading) -> Array:
 
 
 def every_slope(choose: Callable[[Causes], Stencil], reading: Reading) -> dict[Causes, Array]:
-    """Give the slopes (D,) with each of the subsets of the causes present.
+    """Return the slopes (D,) with each of the subsets of the causes present.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def every_slope(choose: Callable[[Causes], Stencil], reading: Reading) -> dict[C
 
 
 def marginals(values: Mapping[Causes, Array], cause: str) -> dict[Causes, Array]:
-    """Give what a cause adds to each subset of the others: value with it less value without."""
+    """Return what a cause adds to each subset of the others: value with it less value without."""
     return {
         others: values[others | {cause}] - value
         for others, value in values.items()
@@ -162,7 +162,7 @@ def marginals(values: Mapping[Causes, Array], cause: str) -> dict[Causes, Array]
 
 
 def shapley(values: Mapping[Causes, Array]) -> dict[str, Array]:
-    r"""Give each cause its part of the whole: the mean over all orders of switching them off.
+    r"""Return each cause's part of the whole: the mean over all orders of switching them off.
 
     .. math:: \phi_c = \sum_{S \not\ni c} \frac{|S|!\,(m - |S| - 1)!}{m!}
        \left(v(S \cup c) - v(S)\right)
@@ -189,8 +189,8 @@ def shapley(values: Mapping[Causes, Array]) -> dict[str, Array]:
     }
 
 
-def share(part: Array, whole: Array) -> float:
-    """Give a part's share of a whole's variance: cov(part, whole) / var(whole).
+def variance_share(part: Array, whole: Array) -> float:
+    """Return a part's share of a whole's variance: cov(part, whole) / var(whole).
 
     Shares of parts that sum to the whole, or to it less a constant, sum to one. That of a part
     which goes against the rest is negative. A whole that does not vary has NaN.

@@ -56,7 +56,7 @@ class Band(NamedTuple):
 
 
 def contenders(config: Config) -> dict[str, Processing]:
-    """Give the processing of each estimator that is compared, the run's own last if it is other."""
+    """Return the processing of each estimator that is compared, last the run's if it is other."""
     compared = {
         name: Processing.model_validate(differing) for name, differing in CONTENDERS.items()
     }
@@ -65,10 +65,10 @@ def contenders(config: Config) -> dict[str, Processing]:
     return compared
 
 
-def phases(
+def sweep_phases(
     processing: Processing, band: Band, diameter: Array, intensity: Array, model: Model
 ) -> Array:
-    """Estimate the phases (D,), rad, of spectra (D, K) at nominal diameters (D,), µm.
+    """Return the phases (D,), rad, of spectra (D, K) at nominal diameters (D,), µm.
 
     Of maximum likelihood, which has none, the prediction's for the diameter that it finds.
     """
@@ -77,23 +77,23 @@ def phases(
     return estimate(intensity, band.wavenumber, band.n_neuron * diameter, processing).phase
 
 
-def of_series(
+def phases_of_series(
     processing: Processing, band: Band, diameter: float, intensity: Array, model: Model
 ) -> Array:
-    """Estimate the phases (T,), rad, of a series of spectra (T, K) at one nominal diameter, µm."""
+    """Return the phases (T,), rad, of a series of spectra (T, K) at one nominal diameter, µm."""
     if processing.estimator == LIKELIHOOD:
         return band.predicted * maximum_likelihood(intensity, model, processing.read_noise)
     return series_phases(intensity, band.wavenumber, band.n_neuron * diameter, processing)
 
 
-def slopes(
+def sweep_slopes(
     processing: Processing, band: Band, diameter: Array, intensity: Array, model: Model
 ) -> Array:
-    """Give the phase slope (D,), mrad/nm, of a sweep's spectra (D, K).
+    """Return the phase slope (D,), mrad/nm, of a sweep's spectra (D, K).
 
     Of fft it is that of each spectrum's strongest component, as in the stage phase_slope.
     """
     if processing.estimator == THESIS:
         components = fourier_components(intensity, processing)
         return phase_slopes(diameter, np.abs(components), np.angle(components)).strongest
-    return slope_of(diameter, phases(processing, band, diameter, intensity, model))
+    return slope_of(diameter, sweep_phases(processing, band, diameter, intensity, model))

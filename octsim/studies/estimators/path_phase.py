@@ -13,12 +13,12 @@ Array = NDArray[np.float64]
 
 
 def goes_through(light: Light) -> NDArray[np.bool_]:
-    """Tell which rays (D,) have been inside the cylinder."""
+    """Return which rays (D,) have been inside the cylinder."""
     return rays_on(light, lambda name: "CT" in name)
 
 
 def path_phase(light: Light, wavenumber: float) -> float:
-    r"""Give the phase between the light that has been inside the cylinder and the rest, rad.
+    r"""Return the phase between the light that has been inside the cylinder and the rest, rad.
 
     .. math:: \phi = \arg \sum_{\mathrm{inside}} E_j e^{ik\Lambda_j}
         - \arg \sum_{\mathrm{not}} E_j e^{ik\Lambda_j}
@@ -29,7 +29,7 @@ def path_phase(light: Light, wavenumber: float) -> float:
 
 
 def mean_path_difference(light: Light) -> float:
-    """Give how much longer the mean path inside the cylinder is than the others', µm.
+    """Return how much longer the mean path inside the cylinder is than the others', µm.
 
     Means are weighted with the amplitudes' sizes.
     """
@@ -42,7 +42,7 @@ def mean_path_difference(light: Light) -> float:
 
 
 def path_slopes(lights: Sequence[Light], diameter: Array, wavenumber: float) -> tuple[Array, Array]:
-    """Give the slopes over the diameter (D,), mrad/nm, of the path phase and of k · mean path.
+    """Return the slopes over the diameter (D,), mrad/nm, of the path phase and of k · mean path.
 
     The first is what a perfect estimate of the phase at that wavenumber has. The second is
     geometry alone: it differs as rays of a focused beam, of unlike paths, add to a field whose

@@ -4,16 +4,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from octsim.config.derive import changed
 from octsim.config.models import Config
 from octsim.config.processing import Processing
+from octsim.instrument.points import Points
 from octsim.phase.cramer_rao import checked_slope, diameter_bound
 from octsim.phase.derivatives import wrapped
 from octsim.phase.estimators.estimate import Array
 from octsim.phase.estimators.likelihood import Model
 from octsim.phase.modelled_spectra import modelled
 from octsim.phase.noise import measured_counts, photons_for
-from octsim.studies.estimators.contenders import LIKELIHOOD, Band, of_series
+from octsim.studies.estimators.contenders import LIKELIHOOD, Band, phases_of_series
 
 RATIOS = (20.0, 30.0, 40.0, 50.0, 60.0)
 """Signal-to-noise ratios, dB."""
@@ -21,12 +21,11 @@ RUNS = 400
 """Noisy spectra of each."""
 STEP = 5e-4
 """Of the diameter, µm, for derivatives."""
-_ACCURACY = 1e-9  # a derivative divides the error by the step
 _MODEL = np.linspace(-0.06, 0.06, 25)  # µm about the diameter, of maximum likelihood's model
 
 
-class Point(NamedTuple):
-    """A diameter whose resolution is looked for, at a fixed focus."""
+class Surroundings(NamedTuple):
+    """Spectra around a diameter whose resolution is looked for, at a fixed focus."""
 
     diameter: float
     """µm."""
@@ -49,24 +48,26 @@ class Resolution(NamedTuple):
     """Root mean square error of the diameter by each estimator, µm."""
 
 
-def point_of(config: Config, diameter: float, focus: float) -> Point:
-    """Trace the spectra that one diameter (µm) at a fixed focus (µm) needs.
+def surroundings_of(
+    config: Config, diameter: float, focus: float, points: Points | None = None
+) -> Surroundings:
+    """Return the spectra that one diameter (µm) at a fixed focus (µm) needs.
 
     Raises
     ------
     OctsimError
         If the derivative by the diameter is not the same by two steps.
     """
-    exact = changed(config, {"tracing": {"accuracy": _ACCURACY}})
-    at: Array = diameter + STEP * np.arange(-2.0, 3.0)
-    spectra = modelled(exact, at, np.full(at.size, focus)).intensity
-    about: Array = diameter + _MODEL
-    model = modelled(config, about, np.full(about.size, focus))
-    return Point(diameter, spectra, checked_slope(spectra, STEP), model)
+
+    def at(offsets: Array) -> Model:
+        return modelled(config, diameter + offsets, np.full(offsets.size, focus), points=points)
+
+    spectra = at(STEP * np.arange(-2.0, 3.0)).intensity
+    return Surroundings(diameter, spectra, checked_slope(spectra, STEP), at(_MODEL))
 
 
 def resolution(
-    point: Point,
+    around: Surroundings,
     band: Band,
     compared: dict[str, Processing],
     decibels: float,
@@ -74,15 +75,15 @@ def resolution(
     seed: tuple[int, ...],
     runs: int = RUNS,
 ) -> Resolution:
-    """Draw noisy spectra of a diameter, and see how far off each estimator's diameter is.
+    """Return how far off each estimator's diameter is, of noisy spectra that are drawn.
 
     A phase's error is divided by the slope that the same estimator has there at a fixed focus, by
     central differences.
 
     Parameters
     ----------
-    point : Point
-        The diameter.
+    around : Surroundings
+        Of the diameter.
     band : Band
         Of its spectra.
     compared : dict
@@ -96,29 +97,31 @@ def resolution(
     runs : int
         Number of noisy spectra.
     """
-    spectrum = point.spectra[2]
+    spectrum = around.spectra[2]
     photons = photons_for(spectrum, 10 ** (decibels / 10), read_noise)
     bright = np.broadcast_to(spectrum, (runs, spectrum.size))
     counts = measured_counts(bright, photons, read_noise, np.random.default_rng(seed))
-    told = {
+    with_noise = {
         name: processing.model_copy(update={"read_noise": read_noise})
         for name, processing in compared.items()
     }
     # without noise the same light, so that read noise has the same weight
-    clean = point.spectra * (photons / spectrum.sum())
-    of_each = {name: _error(one, band, point, clean, counts) for name, one in told.items()}
-    bound = diameter_bound(spectrum, point.slope, photons, read_noise)
+    clean = around.spectra * (photons / spectrum.sum())
+    of_each = {name: _error(one, band, around, clean, counts) for name, one in with_noise.items()}
+    bound = diameter_bound(spectrum, around.slope, photons, read_noise)
     return Resolution(photons, bound, of_each)
 
 
-def _error(processing: Processing, band: Band, point: Point, clean: Array, counts: Array) -> float:
-    """Give the root mean square error of the diameter, µm; NaN if a run has no estimate."""
+def _error(
+    processing: Processing, band: Band, around: Surroundings, clean: Array, counts: Array
+) -> float:
+    """Return the root mean square error of the diameter, µm; NaN if a run has no estimate."""
     # one series, so that what is common to it (a component, an envelope) is so to both
     series = np.concatenate([clean, counts])
-    found = of_series(processing, band, point.diameter, series, point.model)
-    known, noisy = found[: clean.shape[0]], found[clean.shape[0] :]
+    phases = phases_of_series(processing, band, around.diameter, series, around.model)
+    known, noisy = phases[: clean.shape[0]], phases[clean.shape[0] :]
     if processing.estimator == LIKELIHOOD:
-        known[2] = band.predicted * point.diameter  # not of the model: the truth
+        known[2] = band.predicted * around.diameter  # not of the model: the truth
     slope = wrapped(known[4] - known[0]) / (4 * STEP)
     off = wrapped(noisy - known[2])
     return float(np.sqrt(np.mean(off**2)) / abs(slope))

@@ -9,16 +9,17 @@ from octsim.config.derive import changed
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.config.units import format_length
+from octsim.instrument.points import Points
 from octsim.phase.estimators.estimate import Array
 from octsim.phase.estimators.likelihood import Model, maximum_likelihood
 from octsim.phase.modelled_spectra import modelled
-from octsim.studies.estimators.contenders import Band, slopes
+from octsim.studies.estimators.contenders import Band, sweep_slopes
 
 GAP, INDEX, FOCUS = 0.015, 0.01, 0.1
 """How far another scene's gap (µm), neuron's index and focus (µm) are from the model's."""
 
 
-class Other(NamedTuple):
+class OtherScene(NamedTuple):
     """Spectra of another scene than the one that they are taken for."""
 
     name: str
@@ -36,8 +37,10 @@ class Misreading(NamedTuple):
     """Standard deviation of the relative error over the diameters."""
 
 
-def others(config: Config, foci: Array, threads: int) -> list[Other]:
-    """Trace a sweep (foci (D,) in µm) of the model's own scene and of others."""
+def other_scenes(
+    config: Config, foci: Array, threads: int, points: Points | None = None
+) -> list[OtherScene]:
+    """Return the spectra of a sweep (foci (D,) in µm) of the model's own scene and of others."""
     scene = config.scene
     gap, index = scene.gap + GAP, scene.refractive_index.neuron + INDEX
     changes: Mapping[str, tuple[Mapping[str, Any], float]] = {
@@ -48,7 +51,10 @@ def others(config: Config, foci: Array, threads: int) -> list[Other]:
     }
     diameters = config.sweep.diameters.values()
     return [
-        Other(name, modelled(changed(config, overlay), diameters, foci + off, threads).intensity)
+        OtherScene(
+            name,
+            modelled(changed(config, overlay), diameters, foci + off, threads, points).intensity,
+        )
         for name, (overlay, off) in changes.items()
     ]
 
@@ -56,13 +62,13 @@ def others(config: Config, foci: Array, threads: int) -> list[Other]:
 def misreading(
     processing: Processing, band: Band, diameter: Array, own: Array, other: Array, model: Model
 ) -> Misreading:
-    """Read another scene's spectra (D, K) with the slopes, or the model, of one's own (D, K)."""
-    found = slopes(processing, band, diameter, other, model)
-    expected = slopes(processing, band, diameter, own, model)
-    relative = found / expected - 1
+    """Return how another scene's spectra (D, K) are read by the slopes, or model, of one's own."""
+    read = sweep_slopes(processing, band, diameter, other, model)
+    expected = sweep_slopes(processing, band, diameter, own, model)
+    relative = read / expected - 1
     return Misreading(float(relative.mean()), float(relative.std()))
 
 
 def likelihood_offset(model: Model, diameter: Array, intensity: Array) -> float:
-    """Give the mean error of diameters (D,) themselves, µm, by maximum likelihood."""
+    """Return the mean error of diameters (D,) themselves, µm, by maximum likelihood."""
     return float(np.mean(maximum_likelihood(intensity, model) - diameter))

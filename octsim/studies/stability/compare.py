@@ -1,7 +1,7 @@
 """One cell of the stability matrix: octsim's doubles beside 50 digits and beside float32."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,11 +30,11 @@ from octsim.studies.stability.verdict import (
     NOTHING,
     TOLERANCE,
     UNKNOWN,
-    Cost,
+    Judgement,
     Row,
     Status,
     bound,
-    cost,
+    judged,
 )
 from octsim.tracing.faces import faces_at
 
@@ -54,30 +54,32 @@ def _amplitude_error(pair: Pair) -> float:
 
 
 def worst(
-    errors: list[tuple[float, Key]], conditions: Conditions, which: int, edges: set[Key]
-) -> Cost:
-    """Give the largest error and share of the bound; paths at an edge go to `edges`.
+    errors: list[tuple[float, Key]],
+    condition_of: Callable[[Key], float],
+    at_edge: Callable[[Key], bool],
+) -> tuple[Judgement, set[Key]]:
+    """Return the largest error and fraction of the bound, and the paths at an edge, left out.
 
     Errors below the tolerance are within any bound. Of those only the largest gets its condition,
-    and its share is that of the tolerance: none of them has a larger one.
+    and its fraction is that of the tolerance: none of them has a larger one.
     """
-    found = []
+    kept, edges = [], set()
     for error, key in sorted(errors, reverse=True):
-        condition = conditions.of(key)[which]
+        condition = condition_of(key)
         if error <= TOLERANCE:
-            found.append(Cost(error, condition, error / TOLERANCE))
+            kept.append(Judgement(error, condition, error / TOLERANCE))
             break
-        measured = cost(error, condition)
-        if measured.share > 1 and conditions.at_edge(key):
+        judgement = judged(error, condition)
+        if judgement.of_bound > 1 and at_edge(key):
             edges.add(key)
         else:
-            found.append(measured)
-    largest = max((measured.error for measured in found), default=math.nan)
-    return max(found, key=lambda c: c.share, default=UNKNOWN)._replace(error=largest)
+            kept.append(judgement)
+    largest = max((one.error for one in kept), default=math.nan)
+    return max(kept, key=lambda one: one.of_bound, default=UNKNOWN)._replace(error=largest), edges
 
 
-def phase_slope(case: Case, pairs: list[Pair], conditions: Conditions) -> Cost:
-    """Measure the rounding of a phase slope, rad/µm: k_max (Λ(d + δ) − Λ(d − δ)) / (2 δ).
+def phase_slope(case: Case, pairs: list[Pair], conditions: Conditions) -> Judgement:
+    """Return the rounding of a phase slope, rad/µm: k_max (Λ(d + δ) − Λ(d − δ)) / (2 δ).
 
     Of the brightest path through the neuron that both diameters have; δ is half of the sweep's
     step, or d/100 where that is less. Both tracers take the same two diameters, so that what is
@@ -90,22 +92,27 @@ def phase_slope(case: Case, pairs: list[Pair], conditions: Conditions) -> Cost:
     for pair in sorted(through, key=lambda pair: -abs(pair.amplitude))[:5]:
         ray, code = pair.key
         place = np.flatnonzero(case.beam.number == ray)
-        alone = Beam(*(values[place] for values in case.beam))
+        alone = _rays_of(case.beam, place)
         lengths = []
         for diameter in (low, high):
-            found = traced(case.config, alone, diameter, case.cell.focus)
+            arrived = traced(case.config, alone, diameter, case.cell.focus)
             end = follow(case.inputs(ray, diameter), code)
-            (at,) = np.nonzero(found.path == code)
+            (at,) = np.nonzero(arrived.path == code)
             if at.size == 1 and end.reason == "detected":
-                lengths.append((float(found.optical_path_length[at[0]]), end.path))
+                lengths.append((float(arrived.optical_path_length[at[0]]), end.path))
         if len(lengths) == 2:
             (low_path, low_exact), (high_path, high_exact) = lengths
             scale = case.k_max / (high - low)
             error = float(abs((high_path - high_exact) - (low_path - low_exact))) * scale
-            condition = conditions.of(pair.key)[0]
+            condition = conditions.of(pair.key).phase
             allowed = 2 * bound(condition) / (high - low)
-            return Cost(error, condition, error / allowed)
+            return Judgement(error, condition, error / allowed)
     return UNKNOWN
+
+
+def _rays_of(beam: Beam, place: NDArray[np.intp]) -> Beam:
+    """Return some of a beam's rays, by their places in it."""
+    return beam._replace(**{name: values[place] for name, values in beam._asdict().items()})
 
 
 def _goes_through(code: int) -> bool:
@@ -117,8 +124,8 @@ def _goes_through(code: int) -> bool:
 
 
 def _terms(case: Case, k: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Give the fields at a wavenumber, each rounded once: k Λ is used to the last of its digits."""
-    path = case.found.optical_path_length
+    """Return the fields at a wavenumber, each rounded once: k Λ is used to its last digit."""
+    path = case.detections.optical_path_length
     product = k * path
     # Dekker's product: what rounding took from it
     split = 134217729.0
@@ -127,15 +134,17 @@ def _terms(case: Case, k: float) -> tuple[NDArray[np.float64], NDArray[np.float6
     k_low, p_low = k - k_high, path - p_high
     rest = ((k_high * p_high - product) + k_high * p_low + k_low * p_high) + k_low * p_low
     cos, sin = np.cos(product), np.sin(product)
-    return case.found.amplitude * (cos - rest * sin), case.found.amplitude * (sin + rest * cos)
+    return case.detections.amplitude * (cos - rest * sin), case.detections.amplitude * (
+        sin + rest * cos
+    )
 
 
-def spectrum_sum(case: Case) -> Cost:
-    """Measure the sum over rays against an exactly rounded one, over the largest intensity.
+def spectrum_sum(case: Case) -> Judgement:
+    """Return the error of the sum over rays, by an exactly rounded one, over the largest intensity.
 
     The condition number is that of the paths' last digits in the sum, 2 k Σ|E Λ| Σ|E| / max I.
     """
-    amplitude, path = case.found.amplitude, case.found.optical_path_length
+    amplitude, path = case.detections.amplitude, case.detections.optical_path_length
     k = case.config.spectrum.wavenumbers()
     summed = intensity(amplitude, path, k)
     at = np.unique(np.linspace(0, k.size - 1, WAVENUMBERS).astype(int))
@@ -150,11 +159,11 @@ def spectrum_sum(case: Case) -> Cost:
         return UNKNOWN
     error = float(np.abs(summed[at] - exact).max()) / peak
     total = np.abs(amplitude).sum()
-    return cost(error, float(2 * k[-1] * np.abs(amplitude * path).sum() * total / peak))
+    return judged(error, float(2 * k[-1] * np.abs(amplitude * path).sum() * total / peak))
 
 
-def launch_error(case: Case, rays: list[int]) -> Cost:
-    """Measure the places of a spiral's rays on the objective, as fractions of its radius."""
+def launch_error(case: Case, rays: list[int]) -> Judgement:
+    """Return the error of a spiral's places on the objective, as a fraction of its radius."""
     if case.cell.positions is not None:
         return UNKNOWN
     given = case.inputs(0)
@@ -167,11 +176,11 @@ def launch_error(case: Case, rays: list[int]) -> Cost:
         for exact, at in ((numbers.cos(turn), case.x[j]), (numbers.sin(turn), case.y[j])):
             errors.append(float(abs(exact * distance - numbers.mpf(float(at)) / given.aperture)))
     # the radius, f tan(asin(NA / n)), feels NA and n as 1 / (1 − (NA / n)²) each, and f as 1
-    return cost(max(errors), float(1 + 2 / (1 - ratio**2)))
+    return judged(max(errors), float(1 + 2 / (1 - ratio**2)))
 
 
 def single(case: Case, pairs: list[Pair]) -> Iterator[tuple[float, float]]:
-    """Give the errors of float32 in phase (rad) and amplitude; infinite where a ray is lost."""
+    """Yield the errors of float32 in phase (rad) and amplitude; infinite where a ray is lost."""
     faces = faces_at(scene_of(case.config, case.cell.diameter), case.k_max)
     detector = detector_of(case.config)
     place = np.empty_like(case.beam.number)
@@ -191,7 +200,7 @@ def single(case: Case, pairs: list[Pair]) -> Iterator[tuple[float, float]]:
 
 
 def measure(cell: Cell, base: Config, most: int = RAYS) -> Row:
-    """Measure a cell, with at most so many rays of 50 digits."""
+    """Return what is measured in a cell, with at most so many rays of 50 digits."""
     try:
         config = cell.config(base)
     except ConfigError as error:
@@ -199,32 +208,36 @@ def measure(cell: Cell, base: Config, most: int = RAYS) -> Row:
     case = prepared(cell, config)
     if case.x.size == 0:
         return Row(Status.NO_SUCH_RAY, "no ray of this scene is at that edge")
-    results = (case.found.amplitude, case.found.optical_path_length)
+    results = (case.detections.amplitude, case.detections.optical_path_length)
     if not all(np.isfinite(values).all() for values in results):
         return Row(Status.NOT_FINITE, "an amplitude or a path is not finite")
     rays, conditions = sample(case, most), Conditions(case)
     pairs, edges, lost = compared(case, rays, conditions)
-    at_edge: set[Key] = set()
     phase_errors = [(_phase_error(case, pair), pair.key) for pair in pairs]
-    costs: dict[str, Cost] = {
-        "phase": worst(phase_errors, conditions, 0, at_edge),
-        "amplitude": worst(
-            [(_amplitude_error(pair), pair.key) for pair in pairs], conditions, 1, at_edge
-        ),
+    amplitude_errors = [(_amplitude_error(pair), pair.key) for pair in pairs]
+    phase, phase_edges = worst(
+        phase_errors, lambda key: conditions.of(key).phase, conditions.at_edge
+    )
+    amplitude, amplitude_edges = worst(
+        amplitude_errors, lambda key: conditions.of(key).amplitude, conditions.at_edge
+    )
+    judgements = {
+        "phase": phase,
+        "amplitude": amplitude,
         "phase_slope": phase_slope(case, pairs, conditions),
         "spectrum": spectrum_sum(case),
         "launch": launch_error(case, rays),
     }
-    edges += len(at_edge)
+    edges += len(phase_edges | amplitude_edges)
     narrow = list(single(case, pairs))
     kept = [errors for errors in narrow if math.isfinite(errors[0])]
-    over = [name for name, measured in costs.items() if measured.share > 1]
+    over = [name for name, judgement in judgements.items() if judgement.of_bound > 1]
     reason = lost or (f"{', '.join(over)} beyond the bound" if over else "")
     status = Status.BEYOND if reason else Status.EDGE if edges else Status.WITHIN
     warned = rounding_remarks(config)
     if reason and warned:
         status, reason = Status.WARNED, warned[0]
-    elif warned and costs["phase"].error > TOLERANCE:
+    elif warned and phase.error > TOLERANCE:
         reason = warned[0]
     return Row(
         status,
@@ -236,5 +249,5 @@ def measure(cell: Cell, base: Config, most: int = RAYS) -> Row:
         single_phase_error=max((phase for phase, _ in kept), default=math.nan),
         single_amplitude_error=max((amplitude for _, amplitude in kept), default=math.nan),
         single_lost=1 - len(kept) / len(narrow) if narrow else math.nan,
-        **costs,
+        **judgements,
     )

@@ -16,12 +16,12 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any
 
+from octsim.base.errors import not_installed
+
 try:
     from mpmath import MPContext
 except ImportError:
-    raise SystemExit(
-        "octsim: the stability target needs mpmath; install what development needs: make .venv/dev"
-    ) from None
+    raise not_installed("mpmath", "stability") from None
 
 from octsim.config.models import Config
 
@@ -73,7 +73,7 @@ class Inputs:
 
 
 def inputs_of(config: Config, diameter: float, focus: float, x: float, y: float) -> Inputs:
-    """Take the doubles of a config, of a point and of a ray's position as exact numbers."""
+    """Return the doubles of a config, of a point and of a ray's position as exact numbers."""
     index, objective = config.scene.refractive_index, config.objective
     given = (
         index.glass, index.water, index.neuron, config.scene.gap, diameter, focus,
@@ -114,7 +114,7 @@ class End:
 
 
 def launch(given: Inputs) -> Ray:
-    """Start at the objective, towards the focus, with a path that is zero there (thesis §4.1)."""
+    """Return a ray at the objective, towards the focus, where its path is zero (thesis §4.1)."""
     to_focus = (-given.x, -given.y, given.focus_distance)
     distance = numbers.sqrt(sum((part * part for part in to_focus), ZERO))
     vx, vy, vz = (part / distance for part in to_focus)
@@ -129,7 +129,7 @@ def _moved(ray: Ray, distance: Exact, index: Exact) -> Ray:
 
 
 def _to_cylinder(given: Inputs, ray: Ray) -> tuple[Exact | None, Exact]:
-    """Solve |p + t v|² = r² in the cross section; None for a miss, and the margin of a hit."""
+    """Return t of |p + t v|² = r² across the axis, None for a miss, and the margin of a hit."""
     (x, _, z), (vx, _, vz) = ray.at, ray.along
     z -= given.axis
     a, b = vx * vx + vz * vz, x * vx + z * vz
@@ -144,7 +144,7 @@ def _to_cylinder(given: Inputs, ray: Ray) -> tuple[Exact | None, Exact]:
 
 
 def _split(given: Inputs, ray: Ray, surface: str) -> Iterator[Ray]:
-    """Give the reflected, then the transmitted light of a ray that stands on a surface (§4.3)."""
+    """Yield the reflected, then the transmitted light of a ray that stands on a surface (§4.3)."""
     beyond = (
         (WATER if ray.medium == GLASS else GLASS)
         if surface == "P"
@@ -186,7 +186,7 @@ def _split(given: Inputs, ray: Ray, surface: str) -> Iterator[Ray]:
 
 
 def _detect(given: Inputs, ray: Ray) -> End:
-    """Trace a ray in the glass down to the objective, and back to the fibre's image (§4.4)."""
+    """Return the end of a ray in glass: at the objective, and traced back to the fibre (§4.4)."""
     plane = given.focus - given.focus_distance
     ray = _moved(ray, (plane - ray.at[2]) / ray.along[2], given.glass)
     limit = RIM * given.aperture
@@ -207,7 +207,7 @@ def _detect(given: Inputs, ray: Ray) -> End:
 
 
 def _step(given: Inputs, ray: Ray) -> tuple[str, Ray | None, End | None]:
-    """Take a ray to the surface that it meets next, or to its end."""
+    """Return the surface that a ray meets next with the ray there, or the ray's end."""
     heads_up = ray.along[2] > 0
     if ray.medium == GLASS and not heads_up:
         return "O", None, _detect(given, ray)
@@ -229,20 +229,20 @@ def _step(given: Inputs, ray: Ray) -> tuple[str, Ray | None, End | None]:
 
 
 def tree(given: Inputs, max_intersections: int) -> list[End]:
-    """Trace all light paths of one ray that are detected."""
-    found, waiting = [], [launch(given)]
+    """Return all light paths of one ray that are detected."""
+    detected, waiting = [], [launch(given)]
     while waiting:
         ray = waiting.pop()
         surface, met, end = _step(given, ray)
         if end is not None and end.reason == "detected":
-            found.append(end)
+            detected.append(end)
         if met is not None and ray.meetings < max_intersections:
             waiting.extend(_split(given, met, surface))
-    return found
+    return detected
 
 
 def follow(given: Inputs, code: int) -> End:
-    """Trace one light path of a ray as far as it goes; its `code` tells where it went instead."""
+    """Return the end of one light path of a ray; its `code` tells where it went instead."""
     digits = []
     while code > 1:
         code, digit = divmod(code, 4)
@@ -257,16 +257,16 @@ def follow(given: Inputs, code: int) -> End:
         children = list(_split(given, met, surface))
         transmitted = digits.pop() % 2
         if transmitted and len(children) == 1:
-            end = children[0]
-            return End(end.code, "refracted", end.amplitude, end.path, end.margins)
+            other = children[0]
+            return End(other.code, "refracted", other.amplitude, other.path, other.margins)
         ray = children[transmitted]
 
 
 def sensitivities(given: Inputs, code: int) -> Iterator[tuple[Exact, End]]:
-    """Follow a path with each input larger by a little, in turn.
+    """Yield 1 / (relative step) and a path's end, with each input larger by that step in turn.
 
-    Gives 1 / (relative step) with what came out: with the unperturbed End, a difference quotient of
-    twice as many digits as a double has. Inputs that are zero have no rounding, and are left out.
+    With the unperturbed end these are difference quotients of twice as many digits as a double has.
+    Inputs that are zero have no rounding, and are left out.
     """
     step = numbers.mpf("1e-26")
     for field in fields(given):

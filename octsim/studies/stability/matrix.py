@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.base.errors import ConfigError
 from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.instrument.build import detector_of
@@ -41,7 +40,7 @@ class Cell:
         return f"{self.corner} / {self.factor} / {self.value}"
 
     def config(self, base: Config) -> Config:
-        """Make the cell's config.
+        """Return the cell's config.
 
         Raises
         ------
@@ -61,13 +60,13 @@ class Cell:
 
 
 def spiral(config: Config, _: Cell) -> tuple[Positions, Positions]:
-    """Give the positions of the config's own rays."""
+    """Return the positions of the config's own rays."""
     radius = detector_of(config).objective_radius
     return vogel_spiral(config.tracing.rays, radius)
 
 
 def axial(config: Config, _: Cell) -> tuple[Positions, Positions]:
-    """Give rays on the axis, in the planes x = 0 and y = 0, and a hair's breadth off them."""
+    """Return rays on the axis, in the planes x = 0 and y = 0, and a hair's breadth off them."""
     radius = detector_of(config).objective_radius
     steps = np.concatenate(([0.0], radius * np.array([1e-300, 1e-17, 1e-12, 1e-6, 0.05, 0.5, 0.7])))
     x, y = np.meshgrid(steps, steps)
@@ -77,7 +76,7 @@ def axial(config: Config, _: Cell) -> tuple[Positions, Positions]:
 def beside_edge(
     code: int, decision: str, which: int = 0, bearings: tuple[float, ...] = (0.0, 0.02, 0.4)
 ) -> Callable[[Config, Cell], tuple[Positions, Positions]]:
-    """Give the function that finds rays on both sides of where a decision on a path turns.
+    """Return the function that finds rays on both sides of where a decision on a path turns.
 
     Parameters
     ----------
@@ -143,7 +142,7 @@ def _objective(**values: object) -> Overlay:
 
 
 def _factors(glass: float, water: float) -> Iterator[tuple[str, str, Overlay, dict[str, Any]]]:
-    """Give for each factor and value an overlay, and fields of the cell that change."""
+    """Yield for each factor and value an overlay, and fields of the cell that change."""
     for gap in ("0 nm", "1e-6 nm", "1e-3 nm", "1 nm", "1 um", "30 um", "1 mm"):
         yield "gap", gap, {"scene": {"gap": gap}}, {}
     for text, diameter in {
@@ -181,34 +180,24 @@ def _factors(glass: float, water: float) -> Iterator[tuple[str, str, Overlay, di
 
 
 def cells(base: Config) -> list[Cell]:
-    """Give all cells of the matrix, from a base config."""
+    """Return all cells of the matrix, from a base config."""
     index = base.scene.refractive_index
-    found = []
+    listed = []
     for corner, (overlay, diameter, focus) in CORNERS.items():
         start = {"diameter": diameter, "focus": focus}
-        found.append(Cell(corner, "none", "", (overlay,), diameter, focus))
+        listed.append(Cell(corner, "none", "", (overlay,), diameter, focus))
         for factor, value, more, fields in _factors(index.glass, index.water):
-            found.append(Cell(corner, factor, value, (overlay, more), **(start | fields)))
+            listed.append(Cell(corner, factor, value, (overlay, more), **(start | fields)))
     many = {"tracing": {"rays": 1_000_000}}
-    found.append(Cell("default", "rays", "1e6", (many,)))
+    listed.append(Cell("default", "rays", "1e6", (many,)))
     for samples in (2, 100_000):
         overlay = {"spectrum": {"samples": samples}}
-        found.append(Cell("default", "wavenumbers", f"{samples:g}", (overlay,)))
+        listed.append(Cell("default", "wavenumbers", f"{samples:g}", (overlay,)))
     far = {**WIDE, "scene": {"gap": "1 m"}}
     for value, diameter, overlay in (
         ("1 nm thick, gap 1 m", 1e-3, far),
         ("1 pm thick, gap 1 m", 1e-6, far),
         ("1 m thick", 1e6, WIDE),
     ):
-        beyond = Cell("default", "warned of", value, (overlay,), diameter, FOCUS)
-        found.append(beyond)
-    return found
-
-
-def refusal(cell: Cell, base: Config) -> str:
-    """Give octsim's reason for refusing a cell, empty if it does not."""
-    try:
-        cell.config(base)
-    except ConfigError as error:
-        return str(error)
-    return ""
+        listed.append(Cell("default", "warned of", value, (overlay,), diameter, FOCUS))
+    return listed

@@ -28,30 +28,30 @@ RAYS = 100
 
 @dataclass(frozen=True)
 class Case:
-    """A cell made ready: its config, its rays' positions (µm) and what octsim found."""
+    """A cell made ready: its config, its rays' positions (µm) and what octsim detects."""
 
     cell: Cell
     config: Config
     x: NDArray[np.float64]
     y: NDArray[np.float64]
     beam: Beam
-    found: Detections
+    detections: Detections
     k_max: float
 
     def inputs(self, ray: int, diameter: float | None = None) -> Inputs:
-        """Give the exact inputs of a ray by its number, maybe for another diameter (µm)."""
+        """Return the exact inputs of a ray by its number, maybe for another diameter (µm)."""
         at = float(self.x[ray]), float(self.y[ray])
         return inputs_of(self.config, diameter or self.cell.diameter, self.cell.focus, *at)
 
 
 def traced(config: Config, beam: Beam, diameter: float, focus: float) -> Detections:
-    """Trace some rays for a diameter and a focus (µm) as octsim does."""
+    """Return some rays of a diameter and a focus (µm), traced as octsim does."""
     scene = scene_of(config, diameter)
     return trace(scene, beam, detector_of(config), focus, config.tracing.max_intersections)
 
 
 def prepared(cell: Cell, config: Config) -> Case:
-    """Launch and trace a cell's rays as octsim does."""
+    """Return a cell with its rays launched and traced as octsim does."""
     x, y = (cell.positions or spiral)(config, cell)
     if cell.positions is None:
         detector = detector_of(config)
@@ -60,15 +60,15 @@ def prepared(cell: Cell, config: Config) -> Case:
         launched = np.full(x.size, 1 / max(x.size, 1)), np.arange(x.size)
         beam = Beam(*aim(x, y, config.objective.focus_distance), *launched)
     k_max = float(config.spectrum.wavenumbers()[-1])
-    found = traced(config, beam, cell.diameter, cell.focus)
-    return Case(cell, config, x, y, beam, found, k_max)
+    detections = traced(config, beam, cell.diameter, cell.focus)
+    return Case(cell, config, x, y, beam, detections, k_max)
 
 
 def sample(case: Case, most: int) -> list[int]:
-    """Choose at most so many rays: two thirds of them detected ones, the others evenly."""
+    """Return at most so many rays: two thirds of them detected ones, the others evenly."""
     if case.x.size <= most:
         return list(range(case.x.size))
-    seen = np.unique(case.found.ray)
+    seen = np.unique(case.detections.ray)
     if seen.size:
         seen = seen[np.unique(np.linspace(0, seen.size - 1, 2 * most // 3).astype(int))]
     evenly = np.linspace(0, case.x.size - 1, most - seen.size).astype(int)
@@ -87,15 +87,26 @@ class Pair(NamedTuple):
     path: float
 
 
+class Condition(NamedTuple):
+    """Condition numbers Σ|x ∂/∂x| of a light path, over all inputs x."""
+
+    phase: float
+    """rad."""
+    amplitude: float
+    """Relative to the amplitude."""
+    margins: tuple[float, ...]
+    """Of each decision."""
+
+
 class Conditions:
     """Condition numbers by perturbing every input of the 50-digit run, each path's only once."""
 
     def __init__(self, case: Case) -> None:
         self._case = case
-        self._known: dict[Key, tuple[float, float, tuple[float, ...]]] = {}
+        self._known: dict[Key, Condition] = {}
 
-    def of(self, key: Key) -> tuple[float, float, tuple[float, ...]]:
-        """Give Σ|x ∂/∂x| of the phase (rad), the amplitude (relative) and each margin."""
+    def of(self, key: Key) -> Condition:
+        """Return the condition numbers of a path."""
         if key not in self._known:
             given = self._case.inputs(key[0])
             end = follow(given, key[1])
@@ -109,14 +120,14 @@ class Conditions:
                     margins[i] += scale * abs(two - one)
             is_light = abs(end.amplitude) > NOTHING
             relative = amplitude / abs(end.amplitude) if is_light else amplitude
-            self._known[key] = (
-                float(path) * self._case.k_max, float(relative), tuple(map(float, margins)),
-            )  # fmt: skip
+            self._known[key] = Condition(
+                float(path) * self._case.k_max, float(relative), tuple(map(float, margins))
+            )
         return self._known[key]
 
     def at_edge(self, key: Key) -> bool:
-        """Tell whether a decision on a path is one that rounding can take: |margin| ≤ 8 ε κ."""
-        allowed, end = self.of(key)[2], follow(self._case.inputs(key[0]), key[1])
+        """Return whether a decision on a path is one that rounding can take: |margin| ≤ 8 ε κ."""
+        allowed, end = self.of(key).margins, follow(self._case.inputs(key[0]), key[1])
         return any(
             abs(margin) <= SAFETY * EPSILON * condition
             for (_, margin), condition in zip(end.margins, allowed, strict=True)
@@ -124,18 +135,18 @@ class Conditions:
 
 
 def compared(case: Case, rays: list[int], conditions: Conditions) -> tuple[list[Pair], int, str]:
-    """Trace rays with 50 digits and pair them with octsim's; count rays at an edge.
+    """Return the pairs of octsim's rays with 50 digits', the number at an edge, and a lost path.
 
     The text names a path that one tree alone has without being at an edge, empty if there is none.
     """
-    chosen = np.isin(case.found.ray, rays)
+    chosen = np.isin(case.detections.ray, rays)
     fast = {
         (ray, code): (amplitude * case.x.size, path)
         for ray, code, amplitude, path in zip(
-            case.found.ray[chosen].tolist(),
-            case.found.path[chosen].tolist(),
-            case.found.amplitude[chosen].tolist(),
-            case.found.optical_path_length[chosen].tolist(),
+            case.detections.ray[chosen].tolist(),
+            case.detections.path[chosen].tolist(),
+            case.detections.amplitude[chosen].tolist(),
+            case.detections.optical_path_length[chosen].tolist(),
             strict=True,
         )
     }

@@ -71,12 +71,12 @@ def follow_single(
     code: int,
     precision: Precision,
 ) -> Arrival | None:
-    """Follow one light path of the ray at a place of a beam; None if it goes another way.
+    """Return what arrives by one light path of the ray at a place of a beam; None if nothing does.
 
     Arguments as octsim's tracer has them; they are rounded to the precision first.
     """
     faces, detector = _numbers(faces, precision), _numbers(detector, precision)
-    vector = optics.Vector
+    vector: Any = optics.Vector  # of doubles, as octsim has it
     at = vector(precision(0), precision(0), precision(focus))
     along = vector(precision(beam.vx[ray]), precision(beam.vy[ray]), precision(beam.vz[ray]))
     amplitude, path, departure = precision(1), precision(0), 0
@@ -116,7 +116,7 @@ def follow_single(
 def _split(
     faces: Faces, f: int, at: Any, along: Any, cos_i: Real, transmitted: bool
 ) -> tuple[Any, Real] | None:
-    """Return the direction and the factor on the amplitude behind a face; None if there is none."""
+    """Return direction and factor on the amplitude behind a face; None if there is no such ray."""
     n_i, n_t = faces.n_i[f], faces.n_t[f]
     squared = OPTICS["cos_transmitted_squared"](n_i, n_t, cos_i)
     if squared < 0 and transmitted:

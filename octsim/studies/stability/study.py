@@ -15,7 +15,10 @@ from octsim.studies.stability.matrix import cells
 from octsim.studies.stability.pairs import RAYS
 from octsim.studies.stability.verdict import Row, Status
 
-COSTS = ("phase", "amplitude", "phase_slope", "spectrum", "launch")
+JUDGED = ("phase", "amplitude", "phase_slope", "spectrum", "launch")
+"""What of a cell has an error beside its bound."""
+FIELDS = {"error": "error", "condition": "condition", "share": "of_bound"}
+"""Of each, what ends the names of its variables, and the field of its judgement."""
 NUMBERS = (
     "paths_compared", "paths_at_edge", "optical_path_length_error", "single_phase_error",
     "single_amplitude_error", "single_lost",
@@ -23,24 +26,24 @@ NUMBERS = (
 
 
 def row(place: int, base: Config, most: int) -> Row:
-    """Measure the cell at a place of the matrix."""
+    """Return what is measured in the cell at a place of the matrix."""
     return measure(cells(base)[place], base, most)
 
 
 def stability(
     config: Config,
-    processes: int = 1,
+    threads: int = 1,
     prepare: Callable[[], None] | None = None,
     most: int = RAYS,
 ) -> xr.Dataset:
-    """Measure every cell of the matrix.
+    """Return what is measured in every cell of the matrix.
 
     Parameters
     ----------
     config : Config
         The config that the matrix starts from.
-    processes : int
-        How many work at a time.
+    threads : int
+        How many processes work at a time.
     prepare : callable, optional
         What each of several does first.
     most : int
@@ -49,25 +52,25 @@ def stability(
     Returns
     -------
     Dataset
-        For each cell, named corner / factor / value: errors, condition numbers, shares of the
-        bound max(1e-9, 8 ε × condition number), what float32 would cost, status and reason.
+        For each cell, named corner / factor / value: errors, condition numbers, fractions of
+        the bound max(1e-9, 8 ε × condition number), what float32 would cost, status and reason.
     """
     matrix = cells(config)
     work, places = partial(row, base=config, most=most), range(len(matrix))
-    if processes == 1:
+    if threads == 1:
         rows = list(map(work, places))
     else:
         # forked, as the workflow's script can't be imported anew by a fresh interpreter
         context = multiprocessing.get_context("fork")
-        with ProcessPoolExecutor(processes, context, prepare) as pool:
+        with ProcessPoolExecutor(threads, context, prepare) as pool:
             rows = list(pool.map(work, places))
     variables: dict[str, object] = {
         name: ("cell", np.array([getattr(r, name) for r in rows])) for name in NUMBERS
     }
-    for name in COSTS:
-        for part in ("error", "condition", "share"):
-            values = np.array([getattr(getattr(r, name), part) for r in rows])
-            variables[f"{name}_{part}"] = ("cell", values)
+    for name in JUDGED:
+        for ending, field in FIELDS.items():
+            values = np.array([getattr(getattr(r, name), field) for r in rows])
+            variables[f"{name}_{ending}"] = ("cell", values)
     codes, meaning = flags(Status, np.array([r.status for r in rows]))
     variables["status"] = ("cell", codes, meaning | {"long_name": "what became of the cell"})
     variables["reason"] = ("cell", [r.reason for r in rows])
@@ -82,12 +85,11 @@ def stability(
             "factor": ("cell", [cell.factor for cell in matrix]),
             "value": ("cell", [cell.value for cell in matrix]),
         },
-        __name__,
     )
 
 
 def summary(dataset: xr.Dataset) -> str:
-    """Say in one line what the matrix shows."""
+    """Return what the matrix shows, in one line."""
     status = dataset["status"].values
     counts = [
         f"{int((status == member).sum())} {member.name.lower().replace('_', ' ')}"

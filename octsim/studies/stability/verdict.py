@@ -32,15 +32,15 @@ class Status(IntEnum):
     """No ray is at the edge that the cell asks for."""
 
 
-class Cost(NamedTuple):
-    """The largest error, the largest share of its bound, and the condition number there."""
+class Judgement(NamedTuple):
+    """The largest error, the largest fraction of its bound, and the condition number there."""
 
     error: float
     condition: float
-    share: float
+    of_bound: float
 
 
-UNKNOWN = Cost(math.nan, math.nan, math.nan)
+UNKNOWN = Judgement(math.nan, math.nan, math.nan)
 
 
 @dataclass(frozen=True)
@@ -52,21 +52,21 @@ class Row:
     paths_compared: int = 0
     paths_at_edge: int = 0
     optical_path_length_error: float = math.nan
-    phase: Cost = UNKNOWN
-    amplitude: Cost = UNKNOWN
-    phase_slope: Cost = UNKNOWN
-    spectrum: Cost = UNKNOWN
-    launch: Cost = UNKNOWN
+    phase: Judgement = UNKNOWN
+    amplitude: Judgement = UNKNOWN
+    phase_slope: Judgement = UNKNOWN
+    spectrum: Judgement = UNKNOWN
+    launch: Judgement = UNKNOWN
     single_phase_error: float = math.nan
     single_amplitude_error: float = math.nan
     single_lost: float = math.nan
 
 
 def bound(condition: float) -> float:
-    """Error that is allowed: max(1e-9, 8 ε × condition number)."""
+    """Return the error that is allowed: max(1e-9, 8 ε × condition number)."""
     return max(TOLERANCE, SAFETY * EPSILON * condition)
 
 
-def cost(error: float, condition: float) -> Cost:
-    """Set an error beside its bound."""
-    return Cost(error, condition, error / bound(condition))
+def judged(error: float, condition: float) -> Judgement:
+    """Return an error beside its bound."""
+    return Judgement(error, condition, error / bound(condition))

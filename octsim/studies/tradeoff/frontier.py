@@ -13,19 +13,19 @@ Array = NDArray[np.float64]
 
 
 def efficient(cost: Array, error: Array) -> NDArray[np.bool_]:
-    """Tell which points (N,) no other one beats: none is as cheap and as good, and better in one.
+    """Return which points (N,) no other one beats: none is as cheap and as good, and better in one.
 
     A point that lacks its cost or its error is beaten.
     """
     better = (cost[:, np.newaxis] <= cost) & (error[:, np.newaxis] <= error)
     strictly = (cost[:, np.newaxis] < cost) | (error[:, np.newaxis] < error)
     beaten = np.any(better & strictly, axis=0)
-    found: NDArray[np.bool_] = np.isfinite(cost) & np.isfinite(error) & ~beaten
-    return found
+    unbeaten: NDArray[np.bool_] = np.isfinite(cost) & np.isfinite(error) & ~beaten
+    return unbeaten
 
 
 def power_law(cost: Array, error: Array) -> tuple[float, float]:
-    """Fit error = factor · cost^exponent (N,) by least squares of the logarithms."""
+    """Return factor and exponent of error = factor · cost^exponent, fitted to logarithms, (N,)."""
     used = np.isfinite(error) & (error > 0) & (error < _LAWFUL)
     if used.sum() < 2:
         return np.nan, np.nan
@@ -34,7 +34,7 @@ def power_law(cost: Array, error: Array) -> tuple[float, float]:
 
 
 def cost_of_rays(segments: Array, error: Array, target: float) -> tuple[float, bool]:
-    """Give the segments that counted rays need for an error, and whether that is measured.
+    """Return the segments that counted rays need for an error, and whether that is measured.
 
     Measured is what lies between two points (N,), of increasing segments, the second and all after
     it within the target; beyond the last one it is the power law's.
@@ -53,7 +53,7 @@ def cost_of_rays(segments: Array, error: Array, target: float) -> tuple[float, b
 def comparison(
     factor: NDArray[np.str_], value: Array, segments: Array, error: Array
 ) -> dict[str, Any]:
-    """Compare the schemes at each target: variables of the trade's dataset.
+    """Return how the schemes compare at each target, as variables of the trade's dataset.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def comparison(
 
 
 def _between(segments: Array, error: Array, target: float) -> float:
-    """Give the segments for an error between efficient points (N,), or of the cheapest of them."""
+    """Return the segments for an error, between efficient points (N,) or of the cheapest one."""
     best = efficient(segments, error)
     order = np.argsort(error[best])
     x, y = np.log(error[best][order]), np.log(segments[best][order])

@@ -25,7 +25,7 @@ Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
 
 
-class Cost(NamedTuple):
+class MeasuredCost(NamedTuple):
     """A sweep's spectra, and what tracing and summing them cost on one thread."""
 
     intensity: NDArray[np.float64]
@@ -40,8 +40,10 @@ class Cost(NamedTuple):
     """Number of diameters whose accuracy was asked for and is not reached."""
 
 
-def sweep_cost(config: Config, diameters: NDArray[np.float64], foci: NDArray[np.float64]) -> Cost:
-    """Trace and sum a sweep on this thread, and measure what that takes.
+def sweep_cost(
+    config: Config, diameters: NDArray[np.float64], foci: NDArray[np.float64]
+) -> MeasuredCost:
+    """Return what it takes to trace and sum a sweep on this thread, no light being kept.
 
     Compiled code should be there, and no memory free, as in a process that has just begun.
 
@@ -52,16 +54,16 @@ def sweep_cost(config: Config, diameters: NDArray[np.float64], foci: NDArray[np.
     diameters, foci : ndarray, shape (D,)
         Diameters and heights of the focus, µm.
     """
-    trace_at, sum_light = Instrument(config).light, Instrument(config).sum
-    points = list(zip(diameters.tolist(), foci.tolist(), strict=True))
+    instrument = Instrument(config)
+    places = list(zip(diameters.tolist(), foci.tolist(), strict=True))
     before = _largest_resident_set()
 
     def once() -> tuple[list[NDArray[np.float64]], list[int], list[AccuracyStatus], float]:
         start = time.thread_time()
         spectra, segments, status = [], [], []
-        for diameter, focus in points:
-            light = trace_at(diameter, focus)
-            spectra.append(sum_light(light)[0])
+        for diameter, focus in places:
+            light = instrument.light(diameter, focus)
+            spectra.append(instrument.sum(light).intensity)
             segments.append(light.segments)
             status.append(light.status)
         return spectra, segments, status, time.thread_time() - start
@@ -72,7 +74,7 @@ def sweep_cost(config: Config, diameters: NDArray[np.float64], foci: NDArray[np.
     if seconds < _LONG:
         times = [once()[-1] for _ in range(_REPEATS)]
     fine = (AccuracyStatus.REACHED, AccuracyStatus.NOT_CONTROLLED)
-    return Cost(
+    return MeasuredCost(
         np.stack(spectra),
         float(np.mean(segments)),
         statistics.median(times),
@@ -87,7 +89,7 @@ def apart(
     *arguments: Parameters.args,
     **keywords: Parameters.kwargs,
 ) -> Result:
-    """Do work in a process of its own, where no memory is left from what was done before.
+    """Return the result of work in a process of its own, where no memory is left from before.
 
     Parameters
     ----------
@@ -98,18 +100,18 @@ def apart(
     *arguments, **keywords
         What `work` takes.
     """
-    _give_back()
+    _free_memory()
     # forked, as compiled code is then there at once
     with ProcessPoolExecutor(1, multiprocessing.get_context("fork"), prepare) as pool:
         return pool.submit(work, *arguments, **keywords).result()
 
 
-def _give_back() -> None:
-    """Give memory that is free back to the system, or a new process would use it unseen."""
+def _free_memory() -> None:
+    """Hand memory that is free to the system, or a new process would use it unseen."""
     with contextlib.suppress(AttributeError, OSError):  # the C library of GNU has it
         ctypes.CDLL(None).malloc_trim(0)
 
 
 def _largest_resident_set() -> int:
-    """Give the largest memory that this process has held so far, in bytes."""
+    """Return the largest memory that this process has held so far, in bytes."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * _RSS_UNIT

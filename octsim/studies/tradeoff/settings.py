@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from octsim.config.derive import by_accuracy, by_rays, changed
 from octsim.config.models import Config
+from octsim.config.scheme import scheme_of
 from octsim.schemes.table import PRESETS
 
 RAYS = (100, 300, 1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000)
@@ -40,7 +41,7 @@ class Setting(NamedTuple):
 
 
 def settings(config: Config) -> list[Setting]:
-    """List the points of a run's trade, factor after factor.
+    """Return the points of a run's trade, factor after factor.
 
     The factor ``reference`` is the reference itself at other settings: how far it moves bounds
     its own error. The run's own setting is added as the factor ``run``, unless it is one of the
@@ -53,12 +54,12 @@ def settings(config: Config) -> list[Setting]:
 
 
 def is_the_runs(setting: Setting, config: Config) -> bool:
-    """Tell whether a setting traces and samples just as the run itself."""
-    return _measured(setting.config) == _measured(config) and setting.every == 1
+    """Return whether a setting traces and samples just as the run itself."""
+    return _relevant(setting.config) == _relevant(config) and setting.every == 1
 
 
 def preset_of(setting: Setting) -> str:
-    """Give the name of the preset that a setting is, or nothing."""
+    """Return the name of the preset that a setting is, or nothing."""
     if setting.factor == "tracing.accuracy":
         for name, preset in PRESETS.items():
             if all(getattr(setting.config.tracing, key) == preset[key] for key in preset):
@@ -66,12 +67,16 @@ def preset_of(setting: Setting) -> str:
     return ""
 
 
-def _measured(config: Config) -> dict[str, Any]:
-    """Give what of a config the results follow from: not what its scheme does not read."""
-    tracing = config.to_dict()["tracing"]
-    unread = {"vogel": ("preset", "accuracy"), "paths": ("preset", "rays", "min_amplitude")}
-    read = {key: tracing[key] for key in tracing if key not in unread[tracing["scheme"]]}
-    return read | {"samples": config.spectrum.samples, "num": config.sweep.diameters.num}
+def _relevant(config: Config) -> dict[str, Any]:
+    """Return what of a config the results follow from: without what its scheme does not read."""
+    scheme, tracing = scheme_of(config), config.tracing
+    return {
+        **scheme.chosen(tracing),
+        "scheme": scheme.name,
+        "max_intersections": tracing.max_intersections,
+        "samples": config.spectrum.samples,
+        "num": config.sweep.diameters.num,
+    }
 
 
 def _tracing(config: Config) -> Iterator[Setting]:

@@ -7,18 +7,19 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.base.threads import each
 from octsim.config.derive import by_accuracy, by_rays, changed, reference
 from octsim.config.models import Config, FocusLine
+from octsim.config.scheme import scheme_of
 from octsim.datasets.files import make
 from octsim.instrument.instrument import Instrument
+from octsim.instrument.points import Points
 from octsim.phase.slopes import phase_slopes
 from octsim.phase.transform import fourier_components
 from octsim.stages.focus_law import focus_law, sweep_foci
 from octsim.stages.focus_sweep import focus_sweep
 from octsim.stages.gaussian_fits import gaussian_fits
 from octsim.studies.tradeoff.frontier import COUNTED, TARGETS, comparison, efficient
-from octsim.studies.tradeoff.measured_cost import Cost, apart, sweep_cost
+from octsim.studies.tradeoff.measured_cost import MeasuredCost, apart, sweep_cost
 from octsim.studies.tradeoff.settings import (
     CONVERGED_SAMPLES,
     FINER,
@@ -29,7 +30,7 @@ from octsim.studies.tradeoff.settings import (
 )
 
 Array = NDArray[np.float64]
-Run = Callable[..., Any]
+_NO_LAW = FocusLine.model_construct(slope=np.nan, intercept=np.nan)
 
 
 class Errors(NamedTuple):
@@ -48,51 +49,43 @@ class Errors(NamedTuple):
 
 
 def intensity_errors(intensity: Array, exact: Array) -> Array:
-    """Give max |I − I_ref| / max I_ref of each spectrum, (D, K) to (D,); NaN where it is dark."""
+    """Return max |I − I_ref| / max I_ref of each spectrum, (D, K) to (D,); NaN where it is dark."""
     with np.errstate(divide="ignore", invalid="ignore"):
         errors: Array = np.abs(intensity - exact).max(axis=1) / exact.max(axis=1)
     return errors
 
 
-def slopes(config: Config, intensity: Array) -> Array:
-    """Give the phase slope of the strongest component (D,), mrad/nm, of spectra (D, K)."""
+def sweep_slopes(config: Config, intensity: Array) -> Array:
+    """Return the phase slope of the strongest component (D,), mrad/nm, of spectra (D, K)."""
     components = fourier_components(intensity, config.processing)
     diameters = config.sweep.diameters.values()
     return phase_slopes(diameters, np.abs(components), np.angle(components)).strongest
 
 
-def fitted_law(config: Config, threads: int) -> xr.Dataset:
-    """Fit a config's focus law."""
-    return focus_law(config, gaussian_fits(config, focus_sweep(config, threads)))
+def fitted_law(config: Config, threads: int, points: Points) -> xr.Dataset:
+    """Return a config's focus law."""
+    return focus_law(config, gaussian_fits(config, focus_sweep(config, threads, points)))
 
 
-def exact_spectra(config: Config, line: FocusLine, threads: int) -> Array:
-    """Trace and sum the reference of a config, (D, K), focused by a line."""
-    converged = reference(config)
-    trace_at, sum_light = Instrument(converged).light, Instrument(converged).sum
-    diameters = converged.sweep.diameters.values()
-    points = zip(diameters.tolist(), line.at(diameters).tolist(), strict=True)
-    return np.stack(list(each(lambda point: sum_light(trace_at(*point))[0], points, threads)))
-
-
-class _Reference:
+class ReferenceSweep:
     """Converged spectra and slopes of a run; each is made when it is first asked for."""
 
-    def __init__(self, config: Config, line: FocusLine, work: Run, threads: int) -> None:
-        self._config, self._line, self._work, self._threads = config, line, work, threads
+    def __init__(self, config: Config, line: FocusLine, threads: int, points: Points) -> None:
+        self._config, self._line, self._threads, self._points = config, line, threads, points
         self._spectra: dict[tuple[int, int], Array] = {}
 
     def spectra(self, num: int, samples: int) -> Array:
-        """Give the spectra (D, K) of some number of diameters and of wavenumbers."""
+        """Return the spectra (D, K) of some number of diameters and of wavenumbers."""
         if (num, samples) not in self._spectra:
-            config = self._sampled(num, samples)
-            self._spectra[num, samples] = self._work(
-                exact_spectra, config, self._line, self._threads
+            config = reference(self._sampled(num, samples))
+            diameters = config.sweep.diameters.values()
+            self._spectra[num, samples] = Instrument(config, self._points).spectra(
+                diameters, self._line.at(diameters), self._threads
             )
         return self._spectra[num, samples]
 
     def slopes(self, setting: Setting) -> Array:
-        """Give what a setting's slope would be, were the factor that it varies converged."""
+        """Return what a setting's slope would be, were the factor that it varies converged."""
         num, samples = setting.config.sweep.diameters.num, setting.config.spectrum.samples
         if setting.factor == "spectrum.samples":
             samples = CONVERGED_SAMPLES
@@ -100,7 +93,7 @@ class _Reference:
         if setting.factor == "sweep.diameters.num":
             finest = FINER * (self._config.sweep.diameters.num - 1)
             steps, num = finest // (num - 1), finest + 1
-        converged = slopes(self._sampled(num, samples), self.spectra(num, samples))
+        converged = sweep_slopes(self._sampled(num, samples), self.spectra(num, samples))
         return converged[::steps]
 
     def _sampled(self, num: int, samples: int) -> Config:
@@ -116,8 +109,9 @@ def tradeoff(
     prepare: Callable[[], None] | None = None,
     chosen: Iterable[Setting] | None = None,
     separate: bool = True,
+    points: Points | None = None,
 ) -> xr.Dataset:
-    """Measure what each setting costs and how far it is from a converged reference.
+    """Return what each setting costs and how far it is from a converged reference.
 
     All spectra are focused by one line, the given one or the reference's law, so that errors of the
     intensity compare like with like.
@@ -134,6 +128,8 @@ def tradeoff(
         Instead of `octsim.studies.tradeoff.settings.settings`.
     separate : bool
         Whether each is measured in a process of its own, without which memory says little.
+    points : Points, optional
+        Where light that was found before is kept; what is measured is found anew.
 
     Returns
     -------
@@ -141,61 +137,62 @@ def tradeoff(
         Errors, costs, and whether it is efficient, of each setting; and how many times fewer
         segments light paths need than counted rays, for each target error.
     """
-
-    def work(function: Callable[..., Any], *arguments: Any) -> Any:
-        return apart(prepare, function, *arguments) if separate else function(*arguments)
-
     listed = list(settings(config) if chosen is None else chosen)
+    points = points or Points()
     # compiled code goes to the processes with this one's memory
     for least in (by_rays(config, 1), by_accuracy(config, 0.1)):
         start = config.sweep.diameters.start
-        Instrument(least).sum(Instrument(least).light(start, start / 2))
+        Instrument(least).spectrum(start, start / 2)
     converged = reference(config)
-    law = work(fitted_law, converged, threads)
+    law = fitted_law(converged, threads, points)
     sweep_foci(converged, law)  # says what is wrong with a law that does not serve
     focus = config.sweep.focus
     line = focus if isinstance(focus, FocusLine) else FocusLine.fitted(law)
-    exact = _Reference(config, line, work, threads)
-    costs: list[Cost] = []
-    errors: list[Errors] = []
-    laws: list[FocusLine] = []
-    for setting in listed:
-        diameters = setting.config.sweep.diameters.values()[:: setting.every]
-        costs.append(work(sweep_cost, setting.config, diameters, line.at(diameters)))
-        errors.append(_errors(setting, costs[-1].intensity, exact))
-        laws.append(
-            FocusLine.fitted(work(fitted_law, setting.config, threads))
-            if setting.law
-            else FocusLine.model_construct(slope=np.nan, intercept=np.nan)
-        )
+    exact = ReferenceSweep(config, line, threads, points)
+    # before what is not timed, whose memory would be there to use again
+    costs = [_measured(setting, line, prepare, separate) for setting in listed]
+    errors = [
+        _errors(setting, cost.intensity, exact) for setting, cost in zip(listed, costs, strict=True)
+    ]
+    laws = [
+        FocusLine.fitted(fitted_law(setting.config, threads, points)) if setting.law else _NO_LAW
+        for setting in listed
+    ]
     variables = {
-        **_measured(listed, costs, errors),
+        **_columns(listed, costs, errors),
         **_law_errors(laws, FocusLine.fitted(law), config),
         **_changes(listed, costs),
     }
     return _dataset(config, listed, variables)
 
 
-def _errors(setting: Setting, intensity: Array, exact: _Reference) -> Errors:
+def _measured(
+    setting: Setting, line: FocusLine, prepare: Callable[[], None] | None, separate: bool
+) -> MeasuredCost:
+    """Return what a setting costs, on this process or on one of its own."""
+    diameters = setting.config.sweep.diameters.values()[:: setting.every]
+    swept = setting.config, diameters, line.at(diameters)
+    return apart(prepare, sweep_cost, *swept) if separate else sweep_cost(*swept)
+
+
+def _errors(setting: Setting, intensity: Array, exact: ReferenceSweep) -> Errors:
     config = setting.config
     spectra = exact.spectra(config.sweep.diameters.num, config.spectrum.samples)
     off = intensity_errors(intensity, spectra[:: setting.every])
-    asked = config.tracing.accuracy if config.tracing.scheme == "paths" else np.inf
-    found = Errors(float(off.max()), float(np.median(off)), int((off > asked).sum()))
+    asked = config.tracing.accuracy if scheme_of(config).controls_error else np.inf
+    errors = Errors(float(off.max()), float(np.median(off)), int((off > asked).sum()))
     if setting.every > 1:
-        return found
-    slope_off = slopes(config, intensity) - exact.slopes(setting)
-    return found._replace(
+        return errors
+    slope_off = sweep_slopes(config, intensity) - exact.slopes(setting)
+    return errors._replace(
         phase_slope_rms_error=float(np.sqrt(np.mean(slope_off**2))),
         phase_slope_largest_error=float(np.abs(slope_off).max()),
     )
 
 
-def _measured(listed: list[Setting], costs: list[Cost], errors: list[Errors]) -> dict[str, Any]:
-    found: dict[str, Any] = {
-        name: ("setting", np.array([getattr(error, name) for error in errors]))
-        for name in Errors._fields
-    }
+def _columns(
+    listed: list[Setting], costs: list[MeasuredCost], errors: list[Errors]
+) -> dict[str, Any]:
     # of as many diameters as the sweep has, where only some were traced
     whole = np.array(
         [
@@ -203,12 +200,15 @@ def _measured(listed: list[Setting], costs: list[Cost], errors: list[Errors]) ->
             for setting, cost in zip(listed, costs, strict=True)
         ]
     )
-    found["segments_per_diameter"] = ("setting", np.array([cost.segments for cost in costs]))
-    found["cpu_seconds"] = ("setting", whole * [cost.cpu_seconds for cost in costs])
-    found["peak_memory"] = ("setting", np.array([cost.peak_memory for cost in costs]))
-    found["unreached"] = ("setting", np.array([cost.unreached for cost in costs]))
-    found["diameters_traced"] = ("setting", np.array([c.intensity.shape[0] for c in costs]))
-    return found
+    column = {
+        **{name: np.array([getattr(error, name) for error in errors]) for name in Errors._fields},
+        "segments_per_diameter": np.array([cost.segments for cost in costs]),
+        "cpu_seconds": whole * [cost.cpu_seconds for cost in costs],
+        "peak_memory": np.array([cost.peak_memory for cost in costs]),
+        "unreached": np.array([cost.unreached for cost in costs]),
+        "diameters_traced": np.array([cost.intensity.shape[0] for cost in costs]),
+    }
+    return {name: ("setting", values) for name, values in column.items()}
 
 
 def _law_errors(laws: list[FocusLine], exact: FocusLine, config: Config) -> dict[str, Any]:
@@ -224,9 +224,9 @@ def _law_errors(laws: list[FocusLine], exact: FocusLine, config: Config) -> dict
     }
 
 
-def _changes(listed: list[Setting], costs: list[Cost]) -> dict[str, Any]:
-    """Give what dropping faint rays changes by itself: rays of one number differ by more."""
-    factor, found = "tracing.min_amplitude", np.full(len(listed), np.nan)
+def _changes(listed: list[Setting], costs: list[MeasuredCost]) -> dict[str, Any]:
+    """Return what dropping faint rays changes by itself: rays of one number differ by more."""
+    factor, change = "tracing.min_amplitude", np.full(len(listed), np.nan)
     of_all = [
         cost.intensity
         for setting, cost in zip(listed, costs, strict=True)
@@ -235,8 +235,8 @@ def _changes(listed: list[Setting], costs: list[Cost]) -> dict[str, Any]:
     if of_all:
         for i, setting in enumerate(listed):
             if setting.factor == factor:
-                found[i] = intensity_errors(costs[i].intensity, of_all[0]).max()
-    return {"intensity_change": ("setting", found)}
+                change[i] = intensity_errors(costs[i].intensity, of_all[0]).max()
+    return {"intensity_change": ("setting", change)}
 
 
 def _dataset(config: Config, listed: list[Setting], variables: dict[str, Any]) -> xr.Dataset:
@@ -273,16 +273,15 @@ def _dataset(config: Config, listed: list[Setting], variables: dict[str, Any]) -
             "scheme": ("setting", [setting.config.tracing.scheme for setting in listed]),
             "target": [f"error of {COUNTED} rays", *(f"{target:g}" for target in TARGETS)],
         },
-        __name__,
     )
 
 
 def summary(dataset: xr.Dataset) -> str:
-    """Say in one line where the run and the presets are."""
+    """Return where the run and the presets are, in one line."""
     named = dataset.isel(setting=(dataset["preset"] != "") | (dataset["default"] == 1))
-    said = [
+    places = [
         f"{str(one['preset'].item()) or 'this run'} {one['worst_intensity_error'].item():.1e} "
         f"with {one['segments_per_diameter'].item():.3g} segments a diameter"
         for one in (named.isel(setting=i) for i in range(named.sizes["setting"]))
     ]
-    return f"tradeoff: error of the intensity {'; '.join(said)}"
+    return f"tradeoff: error of the intensity {'; '.join(places)}"

@@ -1,27 +1,11 @@
-"""Figures 6 and 7: intensity over the focus, and the focus law."""
+"""The focus law through the fitted foci (figure 7)."""
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
 from octsim.config.models import FocusLine
-from octsim.figures.style import BLACK, BLUE, ORANGE, label, title
-
-
-def figure_6(scan: xr.Dataset) -> Figure:
-    """Draw the number of detected rays and the intensity over the focus (thesis fig. 6)."""
-    figure = Figure(figsize=(6.4, 5.2))
-    rays, light = figure.subplots(2, sharex=True)
-    focus = scan["focus"]
-    # off the first peak both fall by decades: linear axes would show one peak of three
-    rays.plot(focus, scan["rays_detected"], color=ORANGE)
-    rays.set_yscale("symlog", linthresh=1)
-    rays.set_ylabel(label(scan["rays_detected"], "rays detected"))
-    light.semilogy(focus, scan["intensity"], color=BLUE)
-    light.set_ylabel(label(scan["intensity"], "mean intensity\n(1 = all light in phase)"))
-    light.set_xlabel(label(focus))
-    rays.set_title(title(scan, f"Focus scan, diameter {float(scan['diameter']):g} µm"))
-    return figure
+from octsim.figures.style import BLACK, BLUE, label, title
 
 
 def figure_7(fits: xr.Dataset, law: xr.Dataset) -> Figure:

@@ -1,0 +1,72 @@
+"""Which keys of a config a dataset follows from: nothing else makes it anew."""
+
+from collections.abc import Iterator, Mapping
+
+from octsim.config.derive import parts_of
+from octsim.config.grid import Axis, axes, combinations
+from octsim.config.models import Config
+from octsim.config.scheme import light_keys, scheme_of
+from octsim.datasets.catalog import CATALOG, LIGHT, SUMMING, Stage
+
+_DECIDING = ("tracing.scheme", "tracing.preset", "sweep.focus")
+"""Keys that decide which others are read."""
+
+
+def keys_read(stage: str, config: Config) -> tuple[str, ...]:
+    """Return the keys that a stage reads itself, at any combination, besides others' datasets."""
+    plain = (at.config for at in combinations(config, *_DECIDING))
+    return tuple(dict.fromkeys(key for one in plain for key in _read(stage, one)))
+
+
+def keys_behind(stage: str, config: Config) -> tuple[str, ...]:
+    """Return the keys that a stage's dataset depends on: its own and those of stages before it."""
+    plain = (at.config for at in combinations(config, *_DECIDING))
+    return tuple(dict.fromkeys(key for one in plain for key in _behind(stage, one)))
+
+
+def _read(stage: str, config: Config) -> Iterator[str]:
+    for key in CATALOG[stage].reads if stage in CATALOG else ():
+        if key == LIGHT:
+            yield from light_keys(config)
+        elif key == SUMMING:
+            yield from scheme_of(config).summing_keys
+        else:
+            yield key
+
+
+def _behind(stage: str, config: Config) -> Iterator[str]:
+    for before in CATALOG[stage].after if stage in CATALOG else ():
+        if before != "focus_law" or config.sweep.focus == "law":
+            yield from _behind(before, config)
+    yield from _read(stage, config)
+
+
+def stage_axes(stage: str, config: Config) -> tuple[Axis, ...]:
+    """Return the axes of the grid that a stage's dataset has: those of the keys behind it.
+
+    A stage that has nothing to do with any varied key has none.
+    """
+    return axes(config, *keys_behind(stage, config))
+
+
+def needs_law(config: Config) -> bool:
+    """Return whether the fitted focus law is needed at some combination."""
+    return any(at.config.sweep.focus == "law" for at in combinations(config, "sweep.focus"))
+
+
+def inputs_of(stage: Stage, config: Config) -> tuple[str, ...]:
+    """Return the datasets that a stage is made from, under a config.
+
+    A given focus needs no law, and what is traced at it does not change with the law.
+    """
+    return tuple(name for name in stage.after if name != "focus_law" or needs_law(config))
+
+
+def differing(stage: str, config: Config, other: Mapping[str, object]) -> list[str]:
+    """Return the keys behind a stage's dataset that another config, as data, differs in.
+
+    Keys are those that the stage depends on under `config`; a varied one is ``grid.<key>``.
+    """
+    keys = keys_behind(stage, config)
+    asked, made = parts_of(config.to_dict(), *keys), parts_of(other, *keys)
+    return [key for key in dict.fromkeys((*asked, *made)) if made.get(key) != asked.get(key)]

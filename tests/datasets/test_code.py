@@ -1,0 +1,87 @@
+"""What an edit makes anew: nothing that does not follow from the code that was edited."""
+
+import json
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+KERNELS = ("octsim.tracing.tree", "octsim.schemes.field_sum", "octsim.schemes.paths.integrate")
+DIGESTS = f"""
+import json
+from octsim.base.provenance import source_digest
+from octsim.config.load import load_config
+from octsim.datasets.catalog import CATALOG
+from octsim.datasets.code import code_of
+found = {{name: source_digest(name) for name in {KERNELS}}}
+for scheme in ("vogel", "paths"):
+    config = load_config({{"tracing": {{"scheme": scheme}}}})
+    found |= {{f"{{scheme}} {{stage}}": code_of(stage, config) for stage in CATALOG}}
+print(json.dumps(found))
+"""
+
+
+@pytest.fixture
+def changed(tmp_path: Path) -> Callable[..., set[str]]:
+    """Return what an edit of a file of the package changes: machine code, and stages by scheme."""
+    skipped = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(ROOT / "octsim", tmp_path / "octsim", ignore=skipped)
+
+    def digests() -> dict[str, str]:
+        code = f"import sys; sys.path.insert(0, {str(tmp_path)!r})\n{DIGESTS}"
+        command = [sys.executable, "-c", code]
+        done = subprocess.run(command, check=True, capture_output=True, text=True)
+        found: dict[str, str] = json.loads(done.stdout)
+        return found
+
+    def changed(name: str) -> set[str]:
+        before, file = digests(), tmp_path / "octsim" / name
+        text = file.read_text(encoding="utf-8")
+        file.write_text(f"{text}\nEDITED = 1\n", encoding="utf-8")
+        after = digests()
+        file.write_text(text, encoding="utf-8")
+        return {one for one in before if before[one] != after[one]}
+
+    return changed
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "config/archive.py", "cli/main.py", "cli/cache.py", "archive/pack.py", "archive/compare.py",
+        "figures/style.py", "figures/phase_slope.py", "instrument/points.py",
+        "instrument/point_store.py", "stages/progress.py", "stages/cost_estimate.py",
+    ],
+)  # fmt: skip
+def test_what_no_number_follows_from_retraces_and_compiles_nothing(
+    changed: Callable[..., set[str]], name: str
+) -> None:
+    assert changed(name) == set()
+
+
+@pytest.mark.parametrize("name", ["schemes/paths/refine.py", "schemes/paths/scheme.py"])
+def test_an_edit_of_the_scheme_paths_touches_no_run_by_counted_rays(
+    changed: Callable[..., set[str]], name: str
+) -> None:
+    found = changed(name)
+    beside = {"stability", "tradeoff", "causes", "estimators", "calibration", "expansion"}
+    beside.add("action_potential")
+    assert {one for one in found if one.startswith("vogel")} == {f"vogel {n}" for n in beside}
+    assert {"paths detections", "paths focus_sweep", "paths focus_scan", "paths spectra"} <= found
+    assert not {"octsim.tracing.tree", "octsim.schemes.field_sum"} & found
+
+
+def test_an_edit_of_a_stage_touches_that_stage_alone(changed: Callable[..., set[str]]) -> None:
+    assert changed("stages/gaussian_fits.py") == {
+        f"{scheme} {stage}"
+        for scheme in ("vogel", "paths")
+        # the law reads how the fits ended, and who follows the law reads the law
+        for stage in (
+            "gaussian_fits", "focus_law", "detections", "spectra", "paths", "causes",
+            "estimators", "calibration", "action_potential", "tradeoff",
+        )
+    }  # fmt: skip
