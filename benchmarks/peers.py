@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from trees import indices
 
 import octsim
 from octsim.instrument.build import detector_of, scene_of
@@ -140,7 +141,7 @@ def optiland_work(job: Job) -> Work:
     from optiland.nonsequential.ir.scene_ir import SamplingPolicy
     from optiland.nonsequential.ray_bundle import NSQRayBundle
 
-    glass, water, neuron = (nsq.NSQMaterial(IdealMaterial(n)) for n in job.scene.refractive_index)
+    glass, water, neuron = (nsq.NSQMaterial(IdealMaterial(n)) for n in indices(job.scene))
     cylinder, launched = job.cylinder, job.launched
     rays = len(launched)
 
@@ -157,7 +158,7 @@ def optiland_work(job: Job) -> Work:
                 *chosen.T.copy(),
                 flux=np.full(len(chosen), 1 / rays),
                 wavelength=np.full(len(chosen), 0.8),
-                n_current=np.full(len(chosen), job.scene.refractive_index[0]),
+                n_current=np.full(len(chosen), indices(job.scene)[0]),
                 bounce=np.zeros(len(chosen), np.int32),
                 alive=np.ones(len(chosen), np.bool_),
                 ray_id=ray_id,
@@ -223,7 +224,7 @@ def pyoptools_work(job: Job) -> Work:
     from pyoptools.raytrace.surface import Plane
     from pyoptools.raytrace.system import System
 
-    n_glass, n_water, n_neuron = job.scene.refractive_index
+    n_glass, n_water, n_neuron = indices(job.scene)
     cylinder, launched = job.cylinder, job.launched
     here = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     plane = Plane(shape=Rectangular(size=(2 * FAR, 2 * FAR)), reflectivity=0.5)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from trees import Tree, library
+from trees import Tree, indices, library
 
 from octsim.optics.beam import Beam
 from octsim.optics.detector import RIM, Detector
@@ -56,7 +56,7 @@ def same_tree(
     room = 8 * rays + 1024
     ray, amplitude, path = np.empty(room, np.int64), np.empty(room), np.empty(room)
     tree = _Tree(
-        (ctypes.c_double * 3)(*scene.refractive_index),
+        (ctypes.c_double * 3)(*indices(scene)),
         cylinder.z,
         cylinder.radius,
         focus,
@@ -88,7 +88,7 @@ def numpy_tree(
 
     Arguments as in `octsim.tracing.tree.trace`.
     """
-    n_glass, n_water, n_neuron = scene.refractive_index
+    n_glass, n_water, n_neuron = indices(scene)
     cylinder = scene.surfaces[1]
     assert isinstance(cylinder, Cylinder)
     zc, radius = cylinder.z, cylinder.radius

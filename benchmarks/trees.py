@@ -7,6 +7,7 @@ owe part of their speed to it.
 
 import ctypes
 import functools
+import math
 import os
 import shutil
 import subprocess
@@ -20,7 +21,7 @@ from numpy.typing import NDArray
 
 from octsim.optics.beam import Beam
 from octsim.optics.detector import RIM, Detector
-from octsim.optics.scene import Cylinder, Medium, Plane, Scene
+from octsim.optics.scene import Cylinder, Plane, Scene
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -89,17 +90,22 @@ class Setting(NamedTuple):
     """Square of `min_amplitude`."""
 
 
+def indices(scene: Scene) -> list[float]:
+    """Return the refractive index of each region of a scene of constant materials."""
+    return [region.material.index(math.nan).real for region in scene.regions]
+
+
 def setting(scene: Scene, detector: Detector, focus: float, min_amplitude: float) -> Setting:
     """Work out what does not depend on the ray; ValueError for a scene that is not the thesis's."""
     match scene.surfaces:
         case (
-            Plane(height, Medium.GLASS, Medium.WATER),
-            Cylinder(x, z, radius, Medium.NEURON, Medium.WATER),
-        ) if z - radius >= height - 1e-12:
+            Plane(height=height, below=slide, above=bath),
+            Cylinder(x=x, z=z, radius=radius, outside=around),
+        ) if slide == scene.objective and around == bath and z - radius >= height - 1e-12:
             pass
         case _:
             raise ValueError(f"a cylinder in water over a plane of glass is needed, not {scene}")
-    glass, water, neuron = scene.refractive_index
+    glass, water, neuron = indices(scene)
     return Setting(
         n_glass=glass,
         glass=glass**2,

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from octsim.optics.detector import Detector, fibre_detector
-from octsim.optics.scene import Scene, neuron_on_glass
+from octsim.optics.materials import Constant
+from octsim.optics.scene import NEURON_ON_GLASS, Scene, neuron_on_glass
 from octsim.schemes.light import Optics
 
 if TYPE_CHECKING:
@@ -25,7 +26,15 @@ def detector_of(config: Config) -> Detector:
 def scene_of(config: Config, diameter: float) -> Scene:
     """Return the scene with a neuron of a diameter, µm."""
     index = config.scene.refractive_index
-    return neuron_on_glass(index.glass, index.water, index.neuron, config.scene.gap, diameter)
+    return neuron_on_glass(
+        Constant(index.glass), Constant(index.water), Constant(index.neuron), config.scene.gap,
+        diameter,
+    )  # fmt: skip
+
+
+def surface_names(config: Config) -> tuple[str, ...]:  # noqa: ARG001
+    """Return the short names of the scene's surfaces, of which those of light paths are made."""
+    return NEURON_ON_GLASS
 
 
 def optics_of(config: Config) -> Optics:

@@ -41,7 +41,7 @@ def aperture_radius(numerical_aperture: float, index: float, focus_distance: flo
 
 
 def vogel_spiral(num: int, radius: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    r"""Place points evenly on a disk, as the seeds of a sunflower.
+    r"""Return points placed evenly on a disk, as the seeds of a sunflower.
 
     .. math:: \theta_j = 2\pi j \varphi, \quad r_j = R \sqrt{j / (N - 1)}
 
@@ -70,7 +70,7 @@ def vogel_spiral(num: int, radius: float) -> tuple[NDArray[np.float64], NDArray[
 def aim(
     x: Coordinate, y: Coordinate, focus_distance: float
 ) -> tuple[Coordinate, Coordinate, Coordinate]:
-    """Give unit vectors (vx, vy, vz) from points (x, y) of the objective to the focus above it.
+    """Return unit vectors (vx, vy, vz) from points (x, y) of the objective to the focus above it.
 
     They do not depend on the height of the focus, as the objective moves with it.
     """
@@ -95,7 +95,7 @@ def vogel_beam(rays: int, radius: float, focus_distance: float) -> Beam:
 
 
 def neighbourly_order(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Order points of the aperture so that those next to each other fare alike.
+    """Return an order of points of the aperture in which neighbours fare alike.
 
     The scene is symmetric in x and y, and a ray's |x| decides the most: strips of |x|, in them |y|.
     The tree is traced faster that way; its result does not depend on the order.

@@ -1,12 +1,18 @@
-"""What the detector collects: which returning rays, with which weight and path."""
+"""What the detector collects: which of the rays that arrive, with which weight and path.
+
+Rays are followed without it, to where they would leave the focal plane. It *accepts* those within
+two radii, and *weighs* what they carry by that place.
+"""
 
 import math
 from enum import IntEnum
 from typing import NamedTuple
 
+import numpy as np
 from numba.extending import register_jitable
+from numpy.typing import NDArray
 
-from octsim.optics.beam import aperture_radius
+from octsim.optics.beam import Coordinate, aperture_radius
 from octsim.optics.interface import Vector
 
 # A ray sent back to the rim itself (a focus on the glass does that) is within it, however the last
@@ -31,6 +37,15 @@ class Outcome(IntEnum):
     """Not traced: below `min_amplitude`."""
     TOTALLY_REFLECTED = 6
     """Not traced: the transmitted ray of a total reflection, which does not exist."""
+
+
+class Acceptance(NamedTuple):
+    """Radii within which rays are accepted, µm; infinite ones accept every ray that returns."""
+
+    objective_radius: float
+    """At the objective."""
+    radius: float
+    """In the focal plane, of the detector's image."""
 
 
 class Detector(NamedTuple):
@@ -79,8 +94,13 @@ def fibre_detector(
     )
 
 
+def acceptance(detector: Detector) -> Acceptance:
+    """Return the radii within which a detector accepts rays."""
+    return Acceptance(detector.objective_radius, detector.radius)
+
+
 @register_jitable(forceinline=True)
-def arrival(height: float, position: Vector, direction: Vector) -> tuple[float, float]:
+def at_plane(height: float, position: Vector, direction: Vector) -> tuple[float, float]:
     """Trace a ray to a horizontal plane, onwards or back.
 
     Returns
@@ -97,28 +117,47 @@ def arrival(height: float, position: Vector, direction: Vector) -> tuple[float, 
 
 
 @register_jitable(forceinline=True)
-def fate(detector: Detector, at_focus: float, at_objective: float) -> int:
-    """Tell whether a ray is detected, from its squared radii (µm²) at the focus and the objective.
+def fate(within: Acceptance, at_focus: float, at_objective: float) -> int:
+    """Return whether a ray is accepted, from its squared radii (µm²) at focus and objective.
 
     By the lens's rule 3 (thesis §4.4) a ray that passes the objective reaches the fibre at the
     point whose image is where it would have left the focal plane.
     """
-    if not at_objective <= (RIM * detector.objective_radius) ** 2:
+    if not at_objective <= (RIM * within.objective_radius) ** 2:
         return Outcome.OFF_OBJECTIVE
-    if not at_focus < detector.radius**2:
+    if not at_focus < within.radius**2:
         return Outcome.OFF_DETECTOR
     return Outcome.DETECTED
 
 
 @register_jitable(forceinline=True)
-def falloff(squared_radius: float, detector_radius: float) -> float:
-    """Parabolic falloff of the detected amplitude, 1 − (ρ/R_det)² (thesis §4.4)."""
-    return 1 - squared_radius / (detector_radius * detector_radius)
+def falloff(squared: Coordinate, and_squared: float = 0.0) -> Coordinate:
+    r"""Return the parabolic falloff of the detected amplitude, 1 − u² with u = ρ/R_det.
+
+    (thesis §4.4). The square can be given in two parts, those of x and y: their sum, close to 1 at
+    the edge of the detector, is then not rounded.
+    """
+    return 1 - squared - and_squared
+
+
+def weight(
+    detector: Detector, x: NDArray[np.float64], y: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the factors on the amplitudes of accepted rays (D,).
+
+    Parameters
+    ----------
+    detector : Detector
+        The receiver.
+    x, y : ndarray, shape (D,)
+        Where the rays would leave the focal plane, µm.
+    """
+    return falloff((x * x + y * y) / (detector.radius * detector.radius))
 
 
 @register_jitable(forceinline=True)
 def lens_correction(squared_radius: float, magnification: float, focal_length: float) -> float:
-    r"""Optical path from the focal point to the fibre, beyond that on the axis, in µm.
+    r"""Return the optical path from the focal point to the fibre, beyond that on the axis, in µm.
 
     .. math:: M (\sqrt{f^2 + \rho^2} - f) = M \rho^2 / (\sqrt{f^2 + \rho^2} + f)
 
@@ -129,10 +168,8 @@ def lens_correction(squared_radius: float, magnification: float, focal_length: f
 
 
 @register_jitable(forceinline=True)
-def collect(
-    detector: Detector, n_glass: float, to_focus: float, at_focus: float
-) -> tuple[float, float]:
-    """Weigh a detected ray, and give the optical path that it has still to go.
+def to_fibre(detector: Detector, n_objective: float, to_focus: float, at_focus: float) -> float:
+    """Return the optical path that a returning ray has still to go to the fibre, µm.
 
     By the lens's rule 4 (thesis §4.4) that is the path to where it would have left the focal plane,
     negative when that lies behind it, and the lens's correction.
@@ -141,17 +178,32 @@ def collect(
     ----------
     detector : Detector
         The receiver.
-    n_glass : float
-        Refractive index below the scene.
+    n_objective : float
+        Refractive index of the region that the objective lies in.
     to_focus, at_focus : float
-        Distance to the focal plane (µm) and squared radius there (µm²), from `arrival`.
-
-    Returns
-    -------
-    weight : float
-        Factor on the amplitude.
-    optical_path_length : float
-        What is added to the ray's path, µm.
+        Distance to the focal plane (µm) and squared radius there (µm²), from `at_plane`.
     """
     correction = lens_correction(at_focus, detector.magnification, detector.focal_length)
-    return falloff(at_focus, detector.radius), n_glass * to_focus + correction
+    return n_objective * to_focus + correction
+
+
+@register_jitable(forceinline=True)
+def rim_margin(detector: Detector, x: float, y: float, vx: float, vy: float, cos: float) -> float:
+    """Return cos² θ (1 − (radius at the objective / that of its rim)²) of a returning ray.
+
+    It is positive for one that is accepted there, and smooth where θ comes near a right angle.
+
+    Parameters
+    ----------
+    detector : Detector
+        The receiver.
+    x, y : float
+        Where the ray leaves the focal plane, times cos θ, µm.
+    vx, vy : float
+        Its unit direction.
+    cos : float
+        Cosine of its angle θ with the optical axis.
+    """
+    at_x, at_y = x + detector.focus_distance * vx, y + detector.focus_distance * vy
+    rim = RIM * detector.objective_radius
+    return cos * cos - (at_x * at_x + at_y * at_y) / (rim * rim)

@@ -19,7 +19,7 @@ class Vector(NamedTuple):
 
 @register_jitable(forceinline=True)
 def reflect(direction: Vector, normal: Vector, cos_i: float) -> Vector:
-    r"""Turn a direction by the law of reflection.
+    r"""Return a direction turned by the law of reflection.
 
     .. math:: \hat v_r = \hat v_i - 2 (\hat v_i \cdot \hat n) \hat n
 
@@ -49,7 +49,7 @@ def reflect(direction: Vector, normal: Vector, cos_i: float) -> Vector:
 
 @register_jitable(forceinline=True)
 def cos_transmitted_squared(n_i: float, n_t: float, cos_i: float) -> float:
-    r"""Square of the cosine of the angle of refraction; negative beyond the critical angle.
+    r"""Return the squared cosine of the angle of refraction; negative beyond the critical angle.
 
     .. math:: \cos^2\theta_t = 1 - \eta^2 (1 - \cos^2\theta_i)
                              = (n_t - n_i)(n_t + n_i) / n_t^2 + \eta^2\cos^2\theta_i,
@@ -67,7 +67,7 @@ def cos_transmitted_squared(n_i: float, n_t: float, cos_i: float) -> float:
 def refract(
     direction: Vector, normal: Vector, n_i: float, n_t: float, cos_i: float, cos_t: float
 ) -> Vector:
-    r"""Turn a direction by Snell's law.
+    r"""Return a direction turned by Snell's law.
 
     .. math:: \hat v_t = -\cos\theta_t \hat n + \eta\, \hat n \times (\hat v_i \times \hat n)
                        = \eta \hat v_i + (\eta\cos\theta_i - \cos\theta_t) \hat n
@@ -85,7 +85,7 @@ def refract(
 
 @register_jitable(forceinline=True)
 def unit(direction: Vector) -> Vector:
-    r"""Take out what rounding has added to the length of a direction, of nearly 1.
+    r"""Return a direction without what rounding has added to its length, of nearly 1.
 
     .. math:: \hat v = \tfrac12 (3 - |v|^2)\, v
 
@@ -98,7 +98,7 @@ def unit(direction: Vector) -> Vector:
 
 @register_jitable(forceinline=True)
 def fresnel(n_i: float, n_t: float, cos_i: float, cos_t: float) -> tuple[float, float]:
-    r"""Amplitude coefficients of reflection and transmission for unpolarised light.
+    r"""Return the amplitude coefficients of reflection and transmission for unpolarised light.
 
     .. math::
         r = \pm\sqrt{\tfrac12 (r_\parallel^2 + r_\perp^2)}, \quad

@@ -1,5 +1,6 @@
-"""Where a ray meets a plane or a cylinder; it knows which side it is on, so nothing is nudged.
+"""Shapes: where a ray meets a plane or a cylinder, also from its inside, and the normal there.
 
+A ray knows which side it is on, so nothing is nudged.
 A ray that meets nothing is an infinite distance away. Distances are signed where a ray is still
 referred to its focus (see `octsim.optics.beam`), which may lie beyond the surface.
 """
@@ -13,7 +14,7 @@ from octsim.optics.interface import Vector
 
 @register_jitable(forceinline=True)
 def meet_plane(height: float, above: bool, position: Vector, direction: Vector) -> float:
-    """Distance along a ray to a horizontal plane (thesis fig. 2).
+    """Return the distance along a ray to a horizontal plane (thesis fig. 2).
 
     Parameters
     ----------
@@ -35,10 +36,16 @@ def meet_plane(height: float, above: bool, position: Vector, direction: Vector) 
 
 
 @register_jitable(forceinline=True)
+def plane_normal(above: bool) -> Vector:
+    """Return the unit normal of a horizontal plane, on one of its sides."""
+    return Vector(0.0, 0.0, 1.0 if above else -1.0)
+
+
+@register_jitable(forceinline=True)
 def enter_cylinder(
     x: float, z: float, radius: float, position: Vector, direction: Vector
 ) -> tuple[float, float]:
-    r"""Distance to a cylinder along y from outside, and the cosine of incidence there.
+    r"""Return the distance to a cylinder along y from outside, and the cosine of incidence there.
 
     With the distance m' to half way along the chord and the distance b of the ray from the axis,
     both in the cross section,
@@ -74,7 +81,7 @@ def enter_cylinder(
 def cross_cylinder(
     x: float, z: float, radius: float, position: Vector, direction: Vector
 ) -> tuple[float, float]:
-    r"""Distance from a point on a cylinder, through its inside, to its far side.
+    r"""Return the distance from a point on a cylinder, through its inside, to its far side.
 
     .. math:: d = 2 m' / \lVert v_\parallel \rVert
 
@@ -84,3 +91,19 @@ def cross_cylinder(
     middle = (x - position.x) * direction.x + (z - position.z) * direction.z
     across_squared = direction.x * direction.x + direction.z * direction.z
     return (2 * middle / across_squared if middle > 0 else math.inf), middle / radius
+
+
+@register_jitable(forceinline=True)
+def cylinder_normal(x: float, z: float, curvature: float, position: Vector) -> Vector:
+    """Return the normal of a cylinder at a point on it, of a length of nearly 1.
+
+    Parameters
+    ----------
+    x, z : float
+        Axis of the cylinder, µm.
+    curvature : float
+        1 / radius for the normal on the outside, −1 / radius for that on the inside, 1/µm.
+    position : Vector
+        The point, µm.
+    """
+    return Vector((position.x - x) * curvature, 0.0, (position.z - z) * curvature)

@@ -1,68 +1,137 @@
-"""The scene: media, the surfaces between them, and the neuron over its glass slide."""
+"""The scene: regions, the surfaces between them, and the neuron over its glass slide."""
 
 from dataclasses import dataclass
-from enum import IntEnum
+from typing import NamedTuple
+
+from octsim.optics.materials import Material
 
 
-class Medium(IntEnum):
-    """A region of one refractive index; the objective lies in the first."""
+class Symmetry(NamedTuple):
+    """In which planes through the optical axis something is its own mirror image."""
 
-    GLASS = 0
-    WATER = 1
-    NEURON = 2
+    x: bool
+    """In the plane x = 0."""
+    y: bool
+    """In the plane y = 0."""
+
+
+@dataclass(frozen=True)
+class Region:
+    """A part of space; two of one material are told apart by their names."""
+
+    name: str
+    material: Material
 
 
 @dataclass(frozen=True)
 class Plane:
-    """A horizontal plane at a height (µm) between two media."""
+    """A horizontal plane at a height (µm) between two regions."""
 
+    name: str
+    """Short, as it stands in the names of light paths."""
     height: float
-    below: Medium
-    above: Medium
+    below: Region
+    above: Region
+
+    @property
+    def sides(self) -> tuple[Region, Region]:
+        """The regions below and above."""
+        return self.below, self.above
+
+    @property
+    def row(self) -> tuple[float, ...]:
+        """Its shape in numbers: height, µm."""
+        return (self.height,)
+
+    @property
+    def symmetry(self) -> Symmetry:
+        """Its symmetry."""
+        return Symmetry(x=True, y=True)
 
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A cylinder along y with its axis at (x, z), all in µm, between two media."""
+    """A cylinder along y with its axis at (x, z), all in µm, between two regions."""
 
+    name: str
+    """Short, as it stands in the names of light paths."""
     x: float
     z: float
     radius: float
-    inside: Medium
-    outside: Medium
+    inside: Region
+    outside: Region
+
+    @property
+    def sides(self) -> tuple[Region, Region]:
+        """The regions inside and outside."""
+        return self.inside, self.outside
+
+    @property
+    def row(self) -> tuple[float, ...]:
+        """Its shape in numbers: axis x and z, and radius, µm."""
+        return self.x, self.z, self.radius
+
+    @property
+    def symmetry(self) -> Symmetry:
+        """Its symmetry."""
+        return Symmetry(x=self.x == 0, y=True)
+
+
+Surface = Plane | Cylinder
 
 
 @dataclass(frozen=True)
 class Scene:
-    """Surfaces, and the refractive index of each medium between them."""
+    """Surfaces, and the region below all of them, in which the objective lies."""
 
-    refractive_index: tuple[float, ...]
-    surfaces: tuple[Plane | Cylinder, ...]
+    objective: Region
+    surfaces: tuple[Surface, ...]
+
+    @property
+    def regions(self) -> tuple[Region, ...]:
+        """Every region once, that of the objective first."""
+        sides = (region for surface in self.surfaces for region in surface.sides)
+        return tuple(dict.fromkeys((self.objective, *sides)))
+
+    @property
+    def surface_names(self) -> tuple[str, ...]:
+        """The surfaces' short names, in their order."""
+        return tuple(surface.name for surface in self.surfaces)
+
+    @property
+    def symmetry(self) -> Symmetry:
+        """The symmetry of all surfaces together."""
+        return Symmetry(
+            x=all(surface.symmetry.x for surface in self.surfaces),
+            y=all(surface.symmetry.y for surface in self.surfaces),
+        )
+
+
+NEURON_ON_GLASS = ("P", "C")
+"""Names of the surfaces of `neuron_on_glass`: plane and cylinder."""
 
 
 def neuron_on_glass(
-    glass: float, water: float, neuron: float, gap: float, diameter: float
+    glass: Material, water: Material, neuron: Material, gap: float, diameter: float
 ) -> Scene:
     """Return a neuron along y in water, a gap above the glass–water plane z = 0.
 
     Parameters
     ----------
-    glass, water, neuron : float
-        Refractive indices.
+    glass, water, neuron : Material
+        What they are made of.
     gap, diameter : float
         Of the neuron, µm.
     """
+    slide, bath, axon = Region("glass", glass), Region("water", water), Region("neuron", neuron)
+    plane, cylinder = NEURON_ON_GLASS
     radius = diameter / 2
     return Scene(
-        refractive_index=(glass, water, neuron),
+        objective=slide,
         surfaces=(
-            Plane(height=0.0, below=Medium.GLASS, above=Medium.WATER),
+            Plane(name=plane, height=0.0, below=slide, above=bath),
             Cylinder(
-                x=0.0,
-                z=gap + radius,
-                radius=radius,
-                inside=Medium.NEURON,
-                outside=Medium.WATER,
+                name=cylinder, x=0.0, z=gap + radius, radius=radius, inside=axon, outside=bath
             ),
         ),
     )

@@ -28,6 +28,22 @@ class AccuracyStatus(IntEnum):
     NO_FOCUS = 5
     """Not traced: the focus law, which the focus was to follow, could not be fitted."""
 
+    @property
+    def remedy(self) -> str:
+        """What a user can do about it; empty where nothing is amiss."""
+        return _REMEDIES[self]
+
+
+_COMPARE = "compare with tracing.scheme vogel, or ask for less by tracing.accuracy"
+_REMEDIES: Mapping[AccuracyStatus, str] = {
+    AccuracyStatus.REACHED: "",
+    AccuracyStatus.BUDGET_SPENT: _COMPARE,
+    AccuracyStatus.NOT_REACHED: _COMPARE,
+    AccuracyStatus.NOT_CONTROLLED: "raise tracing.rays, or give tracing.preset",
+    AccuracyStatus.AT_AN_EDGE: _COMPARE,
+    AccuracyStatus.NO_FOCUS: "give focus_law.fraction a wider range or more steps",
+}
+
 
 class Light(NamedTuple):
     """Weighted rays that reach the detector, D of them, always in the same order."""

@@ -7,44 +7,22 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.base.compiled import compiled
 from octsim.config.models import Config
 from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
+from octsim.instrument.build import surface_names
+from octsim.schemes.field_sum import fields_in_groups
 from octsim.schemes.light import Light
 from octsim.stages.detections import stored_light
 from octsim.stages.workload import point_cost, points_per_block
-from octsim.tracing.follow import path_name
+from octsim.tracing.light_paths import path_name
 
 _SAMPLES = 101  # of the band, for means over it
 
 
-@compiled(fastmath={"contract"})
-def _path_fields(
-    row: NDArray[np.int64],
-    amplitude: NDArray[np.float64],
-    optical_path_length: NDArray[np.float64],
-    paths: int,
-    first: float,
-    step: float,
-    num: int,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Sum the rays of each path at evenly spaced wavenumbers, (paths, num), by a recurrence."""
-    real, imaginary = np.zeros((paths, num)), np.zeros((paths, num))
-    for j in range(row.size):
-        reach, p = optical_path_length[j], row[j]
-        cos, sin = amplitude[j] * np.cos(first * reach), amplitude[j] * np.sin(first * reach)
-        turn_cos, turn_sin = np.cos(step * reach), np.sin(step * reach)
-        for k in range(num):
-            real[p, k] += cos
-            imaginary[p, k] += sin
-            cos, sin = cos * turn_cos - sin * turn_sin, cos * turn_sin + sin * turn_cos
-    return real, imaginary
-
-
 def _mean_paths(light: Light, row: NDArray[np.int64], paths: int) -> NDArray[np.float64]:
-    """Mean optical path of each path's rays, weighted with their amplitudes, (P,); NaN if none."""
+    """Return each path's mean optical path, weighted with amplitudes, (P,); NaN without rays."""
     size = np.abs(light.amplitude)
     total = np.bincount(row, size * light.optical_path_length, paths)
     weight = np.bincount(row, size, paths)
@@ -54,7 +32,7 @@ def _mean_paths(light: Light, row: NDArray[np.int64], paths: int) -> NDArray[np.
 
 
 def _strongest_first(layout: Layout, stored: Stored) -> NDArray[np.int64]:
-    """Find every path of a sweep, that of the strongest field at the middle of the band first."""
+    """Return every path of a sweep, that of the strongest field at mid-band first."""
     strength: dict[int, float] = {}
     for at, span in layout.blocks(_block_points):
         part = stored.part(at, span)
@@ -85,7 +63,7 @@ def _block_points(config: Config) -> int:
 
 @Streamed
 def light_paths(config: Config, detected: xr.Dataset) -> Stream:
-    r"""Tell what each light path has in the spectra of a sweep.
+    r"""Return what each light path has in the spectra of a sweep.
 
     A path's share of the intensity is
 
@@ -109,8 +87,9 @@ def light_paths(config: Config, detected: xr.Dataset) -> Stream:
     unnamed = Layout("paths", config, title, swept, "diameter")
     stored = Stored(detected, "detections", config, unnamed)
     codes = _strongest_first(unnamed, stored)
+    names = surface_names(config)
     named: dict[str, Coordinate] = {
-        "path": ("path", np.array([path_name(code) for code in codes.tolist()], str)),
+        "path": ("path", np.array([path_name(code, names) for code in codes.tolist()], str)),
         "path_code": ("path", codes),
     }
     layout = Layout("paths", config, title, lambda config: named | swept(config), "diameter")
@@ -136,14 +115,14 @@ def _shared(layout: Layout, stored: Stored, codes: NDArray[np.int64]) -> Iterato
 def _shares(
     light: Light, row: NDArray[np.int64], order: NDArray[np.int64], first: float, step: float
 ) -> dict[str, NDArray[Any]]:
-    """Tell what each path has in one spectrum.
+    """Return what each path has in one spectrum.
 
     `row` is the path's number, of each ray; `order` lists the paths as they are summed, so that
     those which only other spectra have change no bit. Real arithmetic, as the rounding of complex
     products hangs on the processor and on a value's place in memory.
     """
     paths = order.size
-    real, imaginary = _path_fields(
+    real, imaginary = fields_in_groups(
         row, light.amplitude, light.optical_path_length, paths, first, step, _SAMPLES
     )
     whole, whole_i = real[order].sum(axis=0), imaginary[order].sum(axis=0)

@@ -14,7 +14,6 @@ from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.instrument.instrument import Instrument
 from octsim.schemes.light import AccuracyStatus, Light
-from octsim.schemes.table import COUNTED_RAYS
 from octsim.stages.detections import stored_light
 from octsim.stages.workload import point_cost, points_per_block
 
@@ -87,21 +86,19 @@ def doubts(measured: xr.Dataset) -> list[str]:
         said.append(
             f"the accuracy is not, or not surely, reached at {missed.sum()} of {missed.size} "
             f"points (accuracy_status says where and why; estimated error up to "
-            f"{error[missed].max():.2g}): compare with tracing.scheme "
-            f"{COUNTED_RAYS.name}, or ask for less by tracing.accuracy"
+            f"{error[missed].max():.2g}): {AccuracyStatus.NOT_REACHED.remedy}"
         )
     if rough.any():
         said.append(
             f"the estimated error of the intensity is above {_ROUGH} of its largest at "
             f"{rough.sum()} of {rough.size} points (intensity_error; up to "
-            f"{error[rough].max():.2g}), so their slopes mean little: raise tracing.rays, or give "
-            "tracing.preset"
+            f"{error[rough].max():.2g}), so their slopes mean little: "
+            f"{AccuracyStatus.NOT_CONTROLLED.remedy}"
         )
     if none.any():
         laws = none.reshape(-1, none.shape[-1]).all(axis=1)
         said.append(
             f"there is no focus law at {laws.sum()} of {laws.size} combinations, which are NaN "
-            "(focus_law.nc has the status of each fit): give focus_law.fraction a wider range or "
-            "more steps"
+            f"(focus_law.nc has the status of each fit): {AccuracyStatus.NO_FOCUS.remedy}"
         )
     return said

@@ -5,9 +5,11 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.optics.scene import NEURON_ON_GLASS
 from octsim.phase.derivatives import wrapped
+from octsim.schemes.field_sum import field_at
 from octsim.schemes.light import Light
-from octsim.tracing.follow import path_name
+from octsim.tracing.light_paths import path_name
 
 GLASS = "PR"
 """The light path off the glass, which meets no neuron."""
@@ -18,14 +20,13 @@ SIDES: Mapping[str, str] = {"near": "PT CR PT", "far": "PT CT CR CT PT"}
 def rays_on(light: Light, chosen: Callable[[str], bool]) -> NDArray[np.bool_]:
     """Return which rays (R,) are on light paths that are chosen by name."""
     codes, path = np.unique(light.path, return_inverse=True)
-    kept = np.array([chosen(path_name(code)) for code in codes.tolist()], bool)
+    kept = np.array([chosen(path_name(code, NEURON_ON_GLASS)) for code in codes.tolist()], bool)
     return kept[path]
 
 
 def field_of(light: Light, rays: NDArray[np.bool_], wavenumber: float) -> complex:
-    """Return the field of some of the rays, (R,), at one wavenumber, 1/µm; 0 without any."""
-    turns = np.exp(1j * wavenumber * light.optical_path_length[rays])
-    return complex((light.amplitude[rays] * turns).sum())
+    """Return the sum of some of the rays, (R,), at one wavenumber (1/µm); 0 if there are none."""
+    return field_at(light.amplitude[rays], light.optical_path_length[rays], wavenumber)
 
 
 def path_field(light: Light, name: str, wavenumber: float) -> complex:

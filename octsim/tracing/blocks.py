@@ -1,77 +1,68 @@
 """A block of rays that have come the same way: one step of them all at a time, lane by lane.
 
-A block is one array with a stretch of `LANES` numbers for each quantity, so that lane i's x is
-``block[X + i]``. The stretches are constants for the compiler's sake: it then knows that they do
-not overlap and computes several lanes with each instruction. Loops that choose lanes are apart from
-loops that compute, for the same reason, and functions are inlined, as a block's step is short.
+Loops that choose lanes are apart from loops that compute, so that the compiler computes several
+lanes with each instruction, and functions are inlined, as a block's step is short.
 """
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.optics.beam import Beam
-from octsim.optics.interface import Vector, cos_transmitted_squared, fresnel, reflect, refract, unit
-from octsim.optics.intersection import cross_cylinder, enter_cylinder, meet_plane
-from octsim.tracing.faces import Faces, Kind
+from octsim.optics.interface import Vector, cos_transmitted_squared, reflect, refract, unit
+from octsim.optics.intersection import (
+    cross_cylinder,
+    cylinder_normal,
+    enter_cylinder,
+    meet_plane,
+    plane_normal,
+)
+from octsim.tracing.faces import Faces, Kind, is_flat
+from octsim.tracing.lanes import (
+    CARRIED,
+    LANES,
+    PATH,
+    RAY,
+    VX,
+    VY,
+    VZ,
+    Block,
+    Lanes,
+    X,
+    Y,
+    Z,
+    direction,
+    position,
+    turn,
+)
 
-Block = NDArray[np.float64]
-Lanes = NDArray[np.float64]
-
-LANES = 128
-X, Y, Z = 0 * LANES, 1 * LANES, 2 * LANES
-VX, VY, VZ = 3 * LANES, 4 * LANES, 5 * LANES
-AMPLITUDE = 6 * LANES
-"""Amplitude relative to that at launch."""
-PATH = 7 * LANES
-"""Optical path length, µm."""
-RAY = 8 * LANES
-"""Number of the launched ray."""
-BLOCK = 9 * LANES
 NOWHERE = -1
-
-
-@register_jitable(forceinline=True)
-def position(block: Block, i: int) -> Vector:
-    """Where lane i is, µm."""
-    return Vector(block[X + i], block[Y + i], block[Z + i])
-
-
-@register_jitable(forceinline=True)
-def direction(block: Block, i: int) -> Vector:
-    """Where lane i heads."""
-    return Vector(block[VX + i], block[VY + i], block[VZ + i])
-
-
-@register_jitable(forceinline=True)
-def turn(block: Block, i: int, towards: Vector) -> None:
-    """Have lane i head elsewhere."""
-    block[VX + i] = towards.x
-    block[VY + i] = towards.y
-    block[VZ + i] = towards.z
 
 
 @register_jitable(forceinline=True)
 def meet(faces: Faces, f: int, block: Block, n: int, distance: Lanes, cos_i: Lanes) -> None:
     """Find the distance of n lanes to a face, and the cosine of incidence there."""
-    kind, x, z, radius = faces.kind[f], faces.x[f], faces.z[f], faces.radius[f]
+    kind, shape = faces.kind[f], faces.shape[f]
+    if is_flat(kind):
+        height, above = shape[0], kind == Kind.PLANE_FROM_ABOVE
+        for i in range(n):
+            distance[i] = meet_plane(height, above, position(block, i), direction(block, i))
+            cos_i[i] = abs(block[VZ + i])
+        return
+    x, z, radius = shape[0], shape[1], shape[2]
     if kind == Kind.CYLINDER_FROM_OUTSIDE:
         for i in range(n):
             distance[i], cos_i[i] = enter_cylinder(
                 x, z, radius, position(block, i), direction(block, i)
             )
-    elif kind == Kind.CYLINDER_FROM_INSIDE:
+    else:
         for i in range(n):
             distance[i], cos_i[i] = cross_cylinder(
                 x, z, radius, position(block, i), direction(block, i)
             )
-    else:
-        above = kind == Kind.PLANE_FROM_ABOVE
-        for i in range(n):
-            distance[i] = meet_plane(z, above, position(block, i), direction(block, i))
-            cos_i[i] = abs(block[VZ + i])
 
 
 @register_jitable(forceinline=True)
@@ -111,7 +102,7 @@ def meet_nearest(
 
 @register_jitable(forceinline=True)
 def choose(face: NDArray[np.int64], f: int, n: int, chosen: NDArray[np.uint32]) -> int:
-    """List those of n lanes that meet face f; give their number."""
+    """List those of n lanes that meet face f; return how many."""
     count = 0
     for i in range(n):
         chosen[count] = i
@@ -120,13 +111,17 @@ def choose(face: NDArray[np.int64], f: int, n: int, chosen: NDArray[np.uint32]) 
 
 
 @register_jitable(forceinline=True)
-def launch(beam: Beam, first: int, n: int, focus: float, block: Block) -> None:
+def launch(
+    beam: Beam, first: int, n: int, focus: float, block: Block,
+    launch_carried: Callable[[Block, int], None],
+) -> None:  # fmt: skip
     """Fill n lanes with rays of a beam from the first given on, referred to the focus."""
     for i in range(n):
         block[X + i], block[Y + i], block[Z + i] = 0.0, 0.0, focus
         block[VX + i], block[VY + i] = beam.vx[first + i], beam.vy[first + i]
         block[VZ + i] = beam.vz[first + i]
-        block[AMPLITUDE + i], block[PATH + i], block[RAY + i] = 1.0, 0.0, first + i
+        block[PATH + i], block[RAY + i] = 0.0, first + i
+        launch_carried(block, i)
 
 
 @register_jitable(forceinline=True)
@@ -138,32 +133,27 @@ def advance(block: Block, i: int, distance: float, n_i: float, to: Block, k: int
     to[VX + k] = block[VX + i]
     to[VY + k] = block[VY + i]
     to[VZ + k] = block[VZ + i]
-    to[AMPLITUDE + k] = block[AMPLITUDE + i]
     to[PATH + k] = block[PATH + i] + distance * n_i
     to[RAY + k] = block[RAY + i]
 
 
 @register_jitable(forceinline=True)
 def advance_chosen(
-    block: Block,
-    n: int,
-    chosen: NDArray[np.uint32],
-    count: int,
-    distance: Lanes,
-    cos_i: Lanes,
-    n_i: float,
-    to: Block,
-    cos_met: Lanes,
-) -> None:
+    faces: Faces, f: int, block: Block, n: int, chosen: NDArray[np.uint32], count: int,
+    distance: Lanes, cos_i: Lanes, to: Block, cos_met: Lanes, move: Callable[..., None],
+) -> None:  # fmt: skip
     """Take the chosen ones of n lanes to the face that they meet, side by side in another block."""
+    n_i, region = faces.n_i[f], faces.region[f]
     if count == n:
         for k in range(n):
             advance(block, k, distance[k], n_i, to, k)
+            move(faces, region, block, k, distance[k], to, k)
             cos_met[k] = cos_i[k]
     else:
         for k in range(count):
             i = chosen[k]
             advance(block, i, distance[i], n_i, to, k)
+            move(faces, region, block, i, distance[i], to, k)
             cos_met[k] = cos_i[i]
 
 
@@ -191,33 +181,33 @@ def leave(
 
 @register_jitable(forceinline=True)
 def split(
-    faces: Faces, f: int, met: Block, n: int, cos_i: Lanes, cos_t: Lanes, beyond: Block
-) -> int:
-    """Split n lanes at the face that they have met; give how many are totally reflected.
+    faces: Faces, f: int, met: Block, n: int, cos_i: Lanes, cos_t: Lanes, beyond: Block,
+    split_carried: Callable[..., None],
+) -> int:  # fmt: skip
+    """Split n lanes at the face that they have met; return how many are totally reflected.
 
     The block `met` becomes the reflected light, `beyond` the transmitted. `cos_t` is filled too; it
     is negative for a totally reflected lane, whose transmitted lane means nothing.
     """
-    kind, x, z, radius = faces.kind[f], faces.x[f], faces.z[f], faces.radius[f]
+    kind, shape = faces.kind[f], faces.shape[f]
     n_i, n_t = faces.n_i[f], faces.n_t[f]
     total = 0
     for i in range(n):
         squared = cos_transmitted_squared(n_i, n_t, cos_i[i])
         passes = squared >= 0
         root = math.sqrt(max(squared, 0.0))
-        r, t = fresnel(n_i, n_t, cos_i[i], root)
         total += 0 if passes else 1
         cos_t[i] = root if passes else -1.0
-        beyond[AMPLITUDE + i] = met[AMPLITUDE + i] * t
-        met[AMPLITUDE + i] = met[AMPLITUDE + i] * (r if passes else 1.0)
-    if kind == Kind.PLANE_FROM_BELOW or kind == Kind.PLANE_FROM_ABOVE:
-        normal = Vector(0.0, 0.0, 1.0 if kind == Kind.PLANE_FROM_ABOVE else -1.0)
+    split_carried(faces, f, met, n, cos_i, cos_t, beyond)
+    if is_flat(kind):
+        normal = plane_normal(kind == Kind.PLANE_FROM_ABOVE)
         for i in range(n):
             leave(met, i, normal, n_i, n_t, cos_i[i], cos_t[i], beyond)
     else:
-        scale = (1.0 if kind == Kind.CYLINDER_FROM_OUTSIDE else -1.0) / radius
+        x, z = shape[0], shape[1]
+        curvature = (1.0 if kind == Kind.CYLINDER_FROM_OUTSIDE else -1.0) / shape[2]
         for i in range(n):
-            normal = Vector((met[X + i] - x) * scale, 0.0, (met[Z + i] - z) * scale)
+            normal = cylinder_normal(x, z, curvature, position(met, i))
             leave(met, i, normal, n_i, n_t, cos_i[i], cos_t[i], beyond)
             # far from where z = 0 the normal of a thin cylinder is not quite a unit vector
             turn(met, i, unit(direction(met, i)))
@@ -226,12 +216,12 @@ def split(
 
 
 @register_jitable(forceinline=True)
-def keep(block: Block, n: int, wanted: NDArray[np.bool_]) -> int:
-    """Move the wanted ones of n lanes together; give their number."""
+def keep(block: Block, n: int, wanted: NDArray[np.bool_], carried: int) -> int:
+    """Move the wanted ones of n lanes, which carry so many numbers, together; return how many."""
     kept = 0
     for i in range(n):
         if wanted[i]:
-            for field in range(0, BLOCK, LANES):
+            for field in range(0, CARRIED + carried * LANES, LANES):
                 block[field + kept] = block[field + i]
             kept += 1
     return kept
@@ -239,25 +229,20 @@ def keep(block: Block, n: int, wanted: NDArray[np.bool_]) -> int:
 
 @register_jitable(forceinline=True)
 def sift(
-    reflected: Block,
-    transmitted: Block,
-    n: int,
-    total: int,
-    cos_t: Lanes,
-    min_amplitude: float,
-    wanted: NDArray[np.bool_],
-) -> tuple[int, int]:
-    """Keep of n split lanes those that exist and are not faint; give how many of each.
+    reflected: Block, transmitted: Block, n: int, total: int, cos_t: Lanes, min_amplitude: float,
+    wanted: NDArray[np.bool_], carried: int, strength: Callable[[Block, int], float],
+) -> tuple[int, int]:  # fmt: skip
+    """Keep of n split lanes those that exist and are not faint; return how many of each.
 
     `total` lanes, those of negative `cos_t`, are totally reflected; `wanted` is room to work in.
     """
     returned, through = n, n
     if total > 0 or min_amplitude > 0:
         for i in range(n):
-            wanted[i] = cos_t[i] >= 0 and abs(transmitted[AMPLITUDE + i]) >= min_amplitude
-        through = keep(transmitted, n, wanted)
+            wanted[i] = cos_t[i] >= 0 and strength(transmitted, i) >= min_amplitude
+        through = keep(transmitted, n, wanted, carried)
     if min_amplitude > 0:
         for i in range(n):
-            wanted[i] = abs(reflected[AMPLITUDE + i]) >= min_amplitude
-        returned = keep(reflected, n, wanted)
+            wanted[i] = strength(reflected, i) >= min_amplitude
+        returned = keep(reflected, n, wanted, carried)
     return returned, through

@@ -1,16 +1,18 @@
 """What light can meet next: the scene as tables, one row for each side of a surface.
 
-A *face* is a surface as met from one medium. Light that has been reflected at a face or transmitted
+A *face* is a surface as met from one region. Light that has been reflected at a face or transmitted
 through it *departs* on one side of that surface, and from there only some faces can come next.
 """
 
+from collections.abc import Mapping
 from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
+from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from octsim.optics.scene import Cylinder, Medium, Plane, Scene
+from octsim.optics.scene import Cylinder, Plane, Scene, Surface
 
 
 class Kind(IntEnum):
@@ -22,6 +24,15 @@ class Kind(IntEnum):
     CYLINDER_FROM_INSIDE = 3
 
 
+KINDS: Mapping[type[Surface], tuple[Kind, Kind]] = {
+    Plane: (Kind.PLANE_FROM_BELOW, Kind.PLANE_FROM_ABOVE),
+    Cylinder: (Kind.CYLINDER_FROM_INSIDE, Kind.CYLINDER_FROM_OUTSIDE),
+}
+"""Kinds of the two faces of a surface, in the order of its `sides`."""
+MET_AGAIN = (Kind.CYLINDER_FROM_INSIDE,)
+"""Faces that what stands on them can meet again at once; what stands on others can't."""
+
+
 class Faces(NamedTuple):
     """Tables of F faces and D departures, for compiled code; departure 0 is the launch."""
 
@@ -29,12 +40,10 @@ class Faces(NamedTuple):
     """`Kind` of each face, (F,)."""
     surface: NDArray[np.int64]
     """Number of the surface in the scene, (F,)."""
-    x: NDArray[np.float64]
-    """Axis of a cylinder, (F,), µm."""
-    z: NDArray[np.float64]
-    """Height of a plane, or of a cylinder's axis, (F,), µm."""
-    radius: NDArray[np.float64]
-    """Radius of a cylinder, (F,), µm; 1 for a plane."""
+    shape: NDArray[np.float64]
+    """Numbers that the kind needs, as the surface's `row` has them, (F, S)."""
+    region: NDArray[np.int64]
+    """Number of the region on the side of incidence, (F,); 0 is that of the objective."""
     n_i: NDArray[np.float64]
     """Refractive index on the side of incidence, (F,)."""
     n_t: NDArray[np.float64]
@@ -48,65 +57,48 @@ class Faces(NamedTuple):
     first: NDArray[np.int64]
     """Where each departure's faces begin in `next_face`, (D + 1,)."""
     n_objective: float
-    """Refractive index of the medium that the objective lies in."""
+    """Refractive index of the region that the objective lies in."""
     to_objective: NDArray[np.bool_]
-    """Whether light of a departure is back in the medium of the objective, (D,)."""
+    """Whether light of a departure is back in the region of the objective, (D,)."""
 
 
-Side = tuple[int, Medium]  # a surface and the medium on one side of it
+@register_jitable(forceinline=True)
+def is_flat(kind: int) -> bool:
+    """Return whether faces of a kind are planes."""
+    return kind == Kind.PLANE_FROM_BELOW or kind == Kind.PLANE_FROM_ABOVE
 
 
-def faces_of(scene: Scene) -> Faces:
-    """Make the tables of a scene, whose objective lies in the first medium below everything."""
-    sides: list[Side] = [(s, m) for s, surface in enumerate(scene.surfaces) for m in media(surface)]
-    departures: list[Side] = [(-1, Medium.GLASS), *sides]
+def faces_at(scene: Scene, wavenumber: float) -> Faces:
+    """Return the tables of a scene at a wavenumber, 1/µm; any, where all materials are constant."""
+    regions, surfaces = scene.regions, scene.surfaces
+    # faces 2 s and 2 s + 1 are those of surface s
+    sides = [(s, regions.index(r)) for s, surface in enumerate(surfaces) for r in surface.sides]
+    kinds = [kind for surface in surfaces for kind in KINDS[type(surface)]]
+    departures = [(-1, 0), *sides]
     following = [
-        [f for f, side in enumerate(sides) if _can_follow(scene, d, side)] for d in departures
+        [
+            f
+            for f, (s, region) in enumerate(sides)
+            if region == here and (s != standing_on or kinds[f] in MET_AGAIN)
+        ]
+        for standing_on, here in departures
     ]
-    others = [_other_side(scene, side) for side in sides]
-    surfaces = [scene.surfaces[s] for s, _ in sides]
-    index = scene.refractive_index
+    index = np.array([region.material.index(wavenumber).real for region in regions])
+    face = np.arange(len(sides))
+    region = np.array([region for _, region in sides], np.int64)
+    rows = [surface.row for surface in surfaces for _ in surface.sides]
+    width = max(map(len, rows), default=0)
     return Faces(
-        kind=np.array([_kind(surface, m) for surface, (_, m) in zip(surfaces, sides, strict=True)]),
-        surface=np.array([s for s, _ in sides]),
-        x=np.array([s.x if isinstance(s, Cylinder) else 0.0 for s in surfaces]),
-        z=np.array([s.z if isinstance(s, Cylinder) else s.height for s in surfaces]),
-        radius=np.array([s.radius if isinstance(s, Cylinder) else 1.0 for s in surfaces]),
-        n_i=np.array([index[m] for _, m in sides]),
-        n_t=np.array([index[m] for _, m in others]),
-        after_reflection=np.array([departures.index(side) for side in sides]),
-        after_transmission=np.array([departures.index(side) for side in others]),
-        next_face=np.array([f for faces in following for f in faces]),
+        kind=np.array(kinds, np.int64),
+        surface=face // 2,
+        shape=np.array([row + (width - len(row)) * (0.0,) for row in rows]),
+        region=region,
+        n_i=index[region],
+        n_t=index[region[face ^ 1]],
+        after_reflection=face + 1,
+        after_transmission=(face ^ 1) + 1,
+        next_face=np.array([f for faces in following for f in faces], np.int64),
         first=np.cumsum([0, *map(len, following)]),
-        n_objective=index[Medium.GLASS],
-        to_objective=np.array([m == Medium.GLASS and s >= 0 for s, m in departures]),
+        n_objective=float(index[0]),
+        to_objective=np.array([s >= 0 and region == 0 for s, region in departures]),
     )
-
-
-def media(surface: Plane | Cylinder) -> tuple[Medium, Medium]:
-    """Give the media below and above a plane, or inside and outside a cylinder."""
-    if isinstance(surface, Plane):
-        return surface.below, surface.above
-    return surface.inside, surface.outside
-
-
-def _kind(surface: Plane | Cylinder, medium: Medium) -> Kind:
-    if isinstance(surface, Plane):
-        return Kind.PLANE_FROM_BELOW if medium == surface.below else Kind.PLANE_FROM_ABOVE
-    inside = medium == surface.inside
-    return Kind.CYLINDER_FROM_INSIDE if inside else Kind.CYLINDER_FROM_OUTSIDE
-
-
-def _other_side(scene: Scene, side: Side) -> Side:
-    s, medium = side
-    inner, outer = media(scene.surfaces[s])
-    return s, outer if medium == inner else inner
-
-
-def _can_follow(scene: Scene, departure: Side, side: Side) -> bool:
-    (standing_on, medium), (s, face_medium) = departure, side
-    if medium != face_medium:
-        return False
-    # what stands on a plane or on the outside of a cylinder can't meet that again at once
-    inside = _kind(scene.surfaces[s], medium) == Kind.CYLINDER_FROM_INSIDE
-    return s != standing_on or inside

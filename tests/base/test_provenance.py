@@ -45,8 +45,8 @@ SPECTRA = "Path('workflow/scripts/spectra.py').resolve()"
     [
         (
             "octsim/optics/interface.py",
-            '"""Turn a direction by the law of',
-            '"""Send a ray back by the law of',
+            '"""Return a direction turned by the law of',
+            '"""Return a ray sent back by the law of',
         ),
         ("octsim/optics/interface.py", "twice = 2 * cos_i", "twice = 2*cos_i  # twice"),
         ("octsim/figures/phase_slope.py", "linewidth=1.0", "linewidth=2.0"),
@@ -121,5 +121,5 @@ def test_a_formula_changed_in_another_file_is_compiled_anew(copy: Path) -> None:
         "print(Instrument(config).light(1.4, 0.5).amplitude[0])"
     )
     before = float(run_in(copy, code))
-    edit(copy / "octsim" / "optics" / "detector.py", "return 1 - squared", "return 0.5 - squared")
-    assert float(run_in(copy, code)) == pytest.approx(before / 2)
+    edit(copy / "octsim" / "optics" / "interface.py", "r = math.sqrt(0.5", "r = math.sqrt(2.0")
+    assert float(run_in(copy, code)) == pytest.approx(before * 2)

@@ -7,7 +7,13 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from octsim.optics.interface import Vector
-from octsim.optics.intersection import cross_cylinder, enter_cylinder, meet_plane
+from octsim.optics.intersection import (
+    cross_cylinder,
+    cylinder_normal,
+    enter_cylinder,
+    meet_plane,
+    plane_normal,
+)
 
 coordinates = st.floats(-5, 5)
 
@@ -89,3 +95,11 @@ def test_a_ray_on_the_axis_crosses_the_whole_diameter() -> None:
     up = Vector(0.0, 0.0, 1.0)
     assert enter_cylinder(0.0, 0.7, 0.7, Vector(0.0, 0.0, 0.0), up) == (0.0, 1.0)
     assert cross_cylinder(0.0, 0.7, 0.7, Vector(0.0, 0.0, 0.0), up) == (1.4, 1.0)
+
+
+def test_normals_point_to_the_side_that_the_ray_is_on() -> None:
+    assert plane_normal(above=True) == (0.0, 0.0, 1.0)
+    assert plane_normal(above=False) == (0.0, 0.0, -1.0)
+    right = Vector(2.5, 7.0, -0.2)
+    assert cylinder_normal(1.0, -0.2, 1 / 1.5, right) == pytest.approx((1.0, 0.0, 0.0))
+    assert cylinder_normal(1.0, -0.2, -1 / 1.5, right) == pytest.approx((-1.0, 0.0, 0.0))

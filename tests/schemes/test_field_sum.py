@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from octsim.config.load import load_config
-from octsim.schemes.field_sum import intensity
+from octsim.schemes.field_sum import field_at, fields_in_groups, intensity
 
 
 def test_wavenumbers_are_even_and_hold_both_ends() -> None:
@@ -42,3 +42,17 @@ def test_the_sum_is_exact_to_rounding(num: int) -> None:
 
 def test_no_light_is_a_dark_spectrum() -> None:
     assert np.array_equal(intensity(np.empty(0), np.empty(0), np.linspace(7, 9, 10)), np.zeros(10))
+
+
+def test_rays_are_summed_in_groups() -> None:
+    rng = np.random.default_rng(3)
+    group, amplitude, path = rng.integers(0, 3, 50), rng.normal(size=50), rng.uniform(-9, 9, 50)
+    first, step = 7.0, 0.02
+    real, imaginary = fields_in_groups(group, amplitude, path, 4, first, step, 100)
+    fields = real + 1j * imaginary
+    assert fields.shape == (4, 100)
+    for number in range(4):
+        one = amplitude[group == number], path[group == number]
+        expected = [field_at(*one, first + step * i) for i in range(100)]
+        assert np.allclose(fields[number], expected, atol=1e-12)
+    assert (fields[3] == 0).all()

@@ -15,16 +15,20 @@ from octsim.instrument.instrument import Instrument
 from octsim.optics.beam import Beam, aim
 from octsim.optics.detector import Detector
 from octsim.optics.interface import cos_transmitted_squared, fresnel
-from octsim.optics.scene import Cylinder, Medium, Plane, Scene
-from octsim.schemes.field_sum import field_of_paths, intensity, spectrum_of
+from octsim.optics.materials import Constant
+from octsim.optics.scene import Cylinder, Plane, Region, Scene, Symmetry
+from octsim.schemes.field_sum import intensity, spectrum_of
 from octsim.schemes.light import AccuracyStatus, Light
 from octsim.schemes.paths.integrate import integrate
-from octsim.tracing.follow import path_name
+from octsim.schemes.paths.path_sum import field_of_paths
+from octsim.tracing.light_paths import path_name
 from octsim.tracing.tree import trace
 
 CONFIG = Config()
 K = CONFIG.spectrum.wavenumbers()
 BAND = float(K[0]), float(K[-1])
+GLASS, WATER = Region("glass", Constant(1.52)), Region("water", Constant(1.33))
+NEURON = Region("neuron", Constant(1.39))
 
 
 def field(light: Light, wavenumber: NDArray[np.float64]) -> NDArray[np.complex128]:
@@ -93,11 +97,7 @@ def test_the_true_error_is_within_the_accuracy(
 
 def test_a_scene_without_symmetry_is_integrated_over_all_of_the_aperture() -> None:
     scene = Scene(
-        (1.52, 1.33, 1.39),
-        (
-            Plane(0.0, Medium.GLASS, Medium.WATER),
-            Cylinder(0.06, 0.7, 0.6, Medium.NEURON, Medium.WATER),
-        ),
+        GLASS, (Plane("P", 0.0, GLASS, WATER), Cylinder("C", 0.06, 0.7, 0.6, NEURON, WATER))
     )
     detector, k = detector_of(CONFIG), K[::111]
     reference = dense_field(scene, detector, 0.8, k, (-1, 1, 1400), (0, 1, 700))
@@ -107,15 +107,12 @@ def test_a_scene_without_symmetry_is_integrated_over_all_of_the_aperture() -> No
 
 
 def test_a_layered_scene_needs_no_cylinder() -> None:
-    scene = Scene(
-        (1.52, 1.33, 1.39),
-        (Plane(0.0, Medium.GLASS, Medium.WATER), Plane(0.4, Medium.WATER, Medium.NEURON)),
-    )
+    scene = Scene(GLASS, (Plane("P", 0.0, GLASS, WATER), Plane("D", 0.4, WATER, NEURON)))
     detector, k = detector_of(CONFIG), K[::111]
     reference = dense_field(scene, detector, 0.2, k, (0, 1, 600), (0, 1, 600))
     light = integrate(scene, detector, 0.2, BAND, 1e-3)
     assert error(light, reference, k) < 1e-3
-    assert "PT DR PT" in {path_name(code, "PD") for code in light.path.tolist()}
+    assert "PT DR PT" in {path_name(code, scene.surface_names) for code in light.path.tolist()}
 
 
 def test_a_focus_on_the_glass_gives_the_mean_fresnel_coefficient() -> None:
@@ -162,6 +159,12 @@ def test_a_budget_that_does_not_suffice_is_named() -> None:
 def test_a_focus_beyond_the_objective_is_refused() -> None:
     with pytest.raises(ValueError, match="focus"):
         integrate(scene_of(CONFIG, 1.4), detector_of(CONFIG), 301.0, BAND, 1e-3)
+
+
+def test_a_scene_that_is_not_symmetric_in_y_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Cylinder, "symmetry", Symmetry(x=True, y=False))
+    with pytest.raises(ValueError, match="symmetric in y"):
+        integrate(scene_of(CONFIG, 1.4), detector_of(CONFIG), 0.88, BAND, 1e-3)
 
 
 def test_interpolating_paths_over_k_is_summing_their_rays() -> None:

@@ -16,6 +16,7 @@ from octsim.datasets.files import read, write
 from octsim.figures.calibration import calibration_figure
 from octsim.figures.style import look, save
 from octsim.instrument.instrument import Instrument, Spectrum
+from octsim.optics.scene import NEURON_ON_GLASS
 from octsim.optics.two_beams import ideal_spectra, predicted_phase_slope
 from octsim.phase.derivatives import derivative, stencil, wrapped
 from octsim.phase.estimators.series import series_phases
@@ -33,7 +34,7 @@ from octsim.studies.calibration.tolerances import (
     value_of,
 )
 from octsim.studies.sides import SIDES, path_field, side_slopes
-from octsim.tracing.follow import path_name
+from octsim.tracing.light_paths import path_name
 
 Array = NDArray[np.float64]
 K = Config().spectrum.wavenumbers()
@@ -193,7 +194,7 @@ def test_the_light_of_a_plates_side_has_the_phase_of_its_path() -> None:
         ones = np.ones(3)
         return Light(codes, ones, ones, lengths, 0.0, 3, AccuracyStatus.REACHED)
 
-    assert [path_name(code) for code in (89, 1517)] == list(SIDES.values())
+    assert [path_name(code, NEURON_ON_GLASS) for code in (89, 1517)] == list(SIDES.values())
     found = side_slopes(trace_at, 1.4, 0.8, 8.0, 1e-4)
     assert found == pytest.approx({"near": 0.0, "far": 16 * N})
     assert path_field(trace_at(1.4, 0.8), "PR", 8.0) == 0

@@ -20,7 +20,7 @@ from octsim.figures.style import look, save
 from octsim.instrument.build import detector_of, scene_of
 from octsim.optics.beam import aim, aperture_radius, vogel_spiral
 from octsim.optics.interface import Vector, fresnel, unit
-from octsim.optics.scene import Scene
+from octsim.optics.scene import NEURON_ON_GLASS, Scene
 from octsim.studies.stability import compare as comparison
 from octsim.studies.stability import pairs
 from octsim.studies.stability import study as stability
@@ -29,8 +29,8 @@ from octsim.studies.stability.matrix import Cell, axial, cells
 from octsim.studies.stability.pairs import prepared
 from octsim.studies.stability.single import follow_single
 from octsim.studies.stability.verdict import Row, Status
-from octsim.tracing.faces import faces_of
-from octsim.tracing.follow import path_name
+from octsim.tracing.faces import faces_at
+from octsim.tracing.light_paths import path_name
 
 ROOT = Path(__file__).parents[2]
 BASE = load_config()
@@ -77,7 +77,10 @@ def test_rays_next_to_an_edge_differ_only_as_far_as_rounding_goes(edge: str) -> 
 
 
 def test_the_axial_ray_of_50_digits_has_the_paths_of_parallel_plates() -> None:
-    found = {path_name(end.code): end for end in tree(inputs_of(BASE, 1.4, 0.8, 0.0, 0.0), 5)}
+    found = {
+        path_name(end.code, NEURON_ON_GLASS): end
+        for end in tree(inputs_of(BASE, 1.4, 0.8, 0.0, 0.0), 5)
+    }
     n_glass, gap = numbers.mpf(1.52), numbers.mpf(0.005)
     expected = -2 * n_glass * numbers.mpf(0.8) + 2 * numbers.mpf(1.33) * gap
     assert abs(found["PT CR PT"].path - expected) < 1e-45
@@ -163,7 +166,7 @@ def test_a_direction_gets_its_length_back() -> None:
 def test_octsims_formulas_ray_by_ray_give_its_own_bits() -> None:
     config = load_config({"tracing": {"rays": 100}, "detector": {"core_diameter": "40 um"}})
     case = prepared(Cell("", "", "", ()), config)
-    faces, place = faces_of(scene_of(config, 1.4)), np.argsort(case.beam.number)
+    faces, place = faces_at(scene_of(config, 1.4), 8.0), np.argsort(case.beam.number)
     found = case.detections
     for ray, code, path in zip(found.ray, found.path, found.optical_path_length, strict=True):
         arguments = (case.beam, 0.876, int(place[ray]), int(code))

@@ -16,12 +16,14 @@ from octsim.instrument.build import detector_of, scene_of
 from octsim.optics.beam import Beam
 from octsim.optics.detector import Outcome
 from octsim.optics.interface import fresnel
-from octsim.tracing.follow import path_name
-from octsim.tracing.tree import Detections, trace
+from octsim.optics.scene import NEURON_ON_GLASS
+from octsim.tracing.light_paths import path_name
+from octsim.tracing.tree import Detections, arrivals, trace
 
 
 def by_ray_and_path(found: Detections) -> dict[tuple[int, str], tuple[float, float]]:
-    keys = zip(found.ray.tolist(), map(path_name, found.path.tolist()), strict=True)
+    names = (path_name(code, NEURON_ON_GLASS) for code in found.path.tolist())
+    keys = zip(found.ray.tolist(), names, strict=True)
     values = zip(found.amplitude.tolist(), found.optical_path_length.tolist(), strict=True)
     return dict(zip(keys, values, strict=True))
 
@@ -190,7 +192,7 @@ def test_a_mirrored_beam_gives_the_same_light(mirror_x: int, mirror_y: int) -> N
     beam = spiral(config)
     mirrored = beam._replace(vx=mirror_x * beam.vx, vy=mirror_y * beam.vy)
     scene, detector = scene_of(config, 1.4), detector_of(config)
-    one, other = trace(scene, beam, detector, 0.88), trace(scene, mirrored, detector, 0.88)
+    one, other = arrivals(scene, beam, detector, 0.88), arrivals(scene, mirrored, detector, 0.88)
     sign = {"x": mirror_x, "vx": mirror_x, "y": mirror_y, "vy": mirror_y}
     for name in one._fields:
         assert np.array_equal(getattr(one, name), sign.get(name, 1) * getattr(other, name)), name
@@ -201,8 +203,8 @@ def test_a_neuron_of_water_is_not_there() -> None:
         {"scene": {"refractive_index": {"neuron": 1.33}}, "tracing": {"rays": 300}}
     )
     found = trace_spiral(config)(1.4, 0.01)
-    seen = {path_name(code) for code in found.path[np.abs(found.amplitude) > 1e-20].tolist()}
-    assert seen == {"PR"}
+    seen = found.path[np.abs(found.amplitude) > 1e-20].tolist()
+    assert {path_name(code, NEURON_ON_GLASS) for code in seen} == {"PR"}
 
 
 def test_the_order_of_the_surfaces_does_not_matter() -> None:

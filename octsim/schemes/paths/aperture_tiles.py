@@ -24,13 +24,13 @@ class Tile(NamedTuple):
 
 @register_jitable(forceinline=True)
 def across(s: float, symmetric: bool) -> float:
-    """Give the place ξ for the coordinate s."""
+    """Return the place ξ for the coordinate s."""
     return math.sqrt(max(s, 0.0)) if symmetric else s
 
 
 @register_jitable(forceinline=True)
 def area(tile: Tile, symmetric: bool) -> float:
-    """Area of a tile on the aperture, of a disk of radius 1."""
+    """Return the area of a tile on the aperture, of a disk of radius 1."""
     low, high = math.sqrt(tile.v_min), math.sqrt(tile.v_max)
     width = across(tile.s_max, symmetric) - across(tile.s_min, symmetric)
     middle = 0.5 * (low + high)
@@ -41,19 +41,19 @@ def area(tile: Tile, symmetric: bool) -> float:
 
 @register_jitable(forceinline=True)
 def images(symmetric: bool) -> float:
-    """Give a part of the aperture and its mirror images, over the disk's area π."""
+    """Return how often mirror images repeat a part of the aperture, over the disk's area π."""
     return (4.0 if symmetric else 2.0) / math.pi
 
 
 @register_jitable(forceinline=True)
 def fraction(tile: Tile, symmetric: bool) -> float:
-    """Fraction of the aperture that a tile and its mirror images make up."""
+    """Return the fraction of the aperture that a tile and its mirror images make up."""
     return images(symmetric) * area(tile, symmetric)
 
 
 @register_jitable
 def halves(tile: Tile, symmetric: bool, along_y: bool) -> tuple[Tile, Tile]:
-    """Cut a tile in two across x, or across y."""
+    """Return the halves of a tile cut across x, or across y."""
     if along_y:
         middle = 0.5 * (math.sqrt(tile.v_min) + math.sqrt(tile.v_max))
         v = middle * middle
@@ -74,7 +74,7 @@ def between(
     tile: Tile, n: int, m: int, along_s: NDArray[np.float64], along_v: NDArray[np.float64],
     left: int, right: int, below: int, above: int,
 ) -> Tile:  # fmt: skip
-    """Give the part of a tile between some of its nodes; those at its ends stand for its edges."""
+    """Return the part of a tile between some of its nodes; the outermost stand for its edges."""
     s, v = tile.s_max - tile.s_min, tile.v_max - tile.v_min
     return Tile(
         tile.s_min + s * along_s[left] if left > 0 else tile.s_min,

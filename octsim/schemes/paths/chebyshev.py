@@ -18,7 +18,7 @@ FIT, LOOK = 0, 1
 
 @cache
 def tables(symmetric: bool) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    r"""Give the nodes of each kind and number n, and what turns values there into coefficients.
+    r"""Return nodes of each kind and number n, and what turns values there into coefficients.
 
     To fit, they are those of Clenshaw and Curtis, :math:`(1 - \cos(\pi i / (n - 1))) / 2`; to look,
     along the square of a coordinate, they are the squares of evenly spaced numbers. The ends are a
@@ -82,7 +82,7 @@ def transform(
 
 @register_jitable(forceinline=True)
 def trailing(coefficients: NDArray[np.float64], n: int, m: int) -> tuple[float, float]:
-    """Sum the magnitudes of the highest coefficients along each axis.
+    """Return the summed magnitudes of the highest coefficients along each axis.
 
     That is what one order less would leave out.
     """

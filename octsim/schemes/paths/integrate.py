@@ -16,21 +16,31 @@ from numpy.typing import NDArray
 
 from octsim.base.compiled import compiled
 from octsim.optics.beam import Beam, aim
-from octsim.optics.detector import Detector
-from octsim.optics.scene import Cylinder, Scene
+from octsim.optics.detector import Detector, acceptance
+from octsim.optics.scene import Plane, Scene
 from octsim.schemes.light import AccuracyStatus, Light
-from octsim.schemes.paths.aperture_tiles import Tile, images
+from octsim.schemes.paths.aperture_tiles import images
 from octsim.schemes.paths.chebyshev import HIGHEST, LOOK, tables
 from octsim.schemes.paths.patch_integrals import rules
-from octsim.schemes.paths.refine import SPARE, Allowed, Tally, Work, settle
-from octsim.schemes.paths.survey import COLUMNS, recall, share_of_faint, survey_aperture
+from octsim.schemes.paths.progress import SPARE, PathGoal, Progress, traced
+from octsim.schemes.paths.refine import settle
+from octsim.schemes.paths.survey import COLUMNS, part_of_faint, recall, survey_aperture
 from octsim.schemes.paths.tile_nodes import aim_at_tile
-from octsim.schemes.paths.waiting_tiles import promising
-from octsim.schemes.paths.workspace import Found, Room, Survey, Task, room_for_nodes, room_for_point
-from octsim.tracing.blocks import LANES
-from octsim.tracing.faces import faces_of
-from octsim.tracing.follow import follow, steps_of
-from octsim.tracing.tree import check_reach, trace
+from octsim.schemes.paths.waiting_tiles import OpenTile, pop_strongest
+from octsim.schemes.paths.workspace import (
+    Point,
+    Survey,
+    WeightedRays,
+    Workspace,
+    room_for_nodes,
+    room_for_point,
+)
+from octsim.tracing.faces import faces_at
+from octsim.tracing.follow import follow
+from octsim.tracing.kernel import trace_amplitudes
+from octsim.tracing.lanes import LANES
+from octsim.tracing.light_paths import steps_of
+from octsim.tracing.tree import check_reach
 
 BUDGET = 1_000_000
 """Segments traced for one point, at most."""
@@ -41,12 +51,12 @@ _MARGIN = 0.7  # of the accuracy, that the estimate of the error may reach
 
 
 @register_jitable
-def _mean_of(found: Found, first: int, end: int) -> tuple[float, float]:
-    """Sum of the amplitudes of some nodes, and their mean optical path."""
+def _mean_of(rays: WeightedRays, first: int, end: int) -> tuple[float, float]:
+    """Return the sum of the amplitudes of some rays, and their mean optical path."""
     total, reach = 0.0, 0.0
     for i in range(first, end):
-        total += found.amplitude[i]
-        reach += found.amplitude[i] * found.optical_path_length[i]
+        total += rays.amplitude[i]
+        reach += rays.amplitude[i] * rays.optical_path_length[i]
     return total, (reach / total if total != 0 else 0.0)
 
 
@@ -54,7 +64,7 @@ def _mean_of(found: Found, first: int, end: int) -> tuple[float, float]:
 def _peak(
     size: NDArray[np.float64], reach: NDArray[np.float64], k_mid: float, k_max: float
 ) -> float:
-    """Largest magnitude over the band of the sum of paths, each taken for a single ray."""
+    """Return the largest magnitude over the band of a sum of paths, each as one ray."""
     largest = 0.0
     for i in range(_PEAK_SAMPLES):
         k = k_mid + (k_max - k_mid) * (2 * i / (_PEAK_SAMPLES - 1) - 1)
@@ -68,110 +78,101 @@ def _peak(
 
 @register_jitable
 def _integrate_path(
-    task: Task, code: int, survey: Survey, number: int, allowed: Allowed, room: Room,
-    found: Found, count: int,
-) -> tuple[Found, Tally, int]:  # fmt: skip
-    """Integrate one path over the aperture: nodes, what has become of it, segments traced."""
-    meetings = steps_of(task.faces, code, room.face, room.through)
-    agenda, top, segments = room.agenda, -1, 0
-    tally = Tally(count, 0.0, 0.0, 0.0, 0.0)
-    work = Work(survey.root, survey.orders[0], survey.orders[1], LOOK, 1.0, np.inf)
-    recall(survey, number, task, room)
+    point: Point, goal: PathGoal, survey: Survey, number: int, space: Workspace,
+    rays: WeightedRays, count: int,
+) -> tuple[WeightedRays, Progress]:  # fmt: skip
+    """Integrate one path of a survey over the aperture; `count` rays are there already."""
+    meetings = steps_of(point.faces, goal.code, space.face, space.through)
+    space.waiting.size[0] = 0
+    progress = Progress(count, 0.0, 0.0, 0.0, 0.0, 0)
+    n, m = survey.orders
+    work = OpenTile(survey.root, n, m, LOOK, 1.0, survey.bound[number], np.inf)
+    recall(survey, number, point, space)
     while True:
-        found, top, tally = settle(
-            task, code, agenda, top, work, allowed, segments > allowed.budget, segments > 0, room,
-            found, tally,
+        rays, progress = settle(point, goal, work, space, rays, progress)
+        if space.waiting.size[0] == 0:
+            return rays, progress
+        work = pop_strongest(space.waiting)
+        aim_at_tile(point, work.tile, work.n, work.m, work.kind, space.beam)
+        segments = follow(
+            point.faces, space.face, space.through, meetings, space.beam, work.n * work.m,
+            point.detector, point.focus, space.rays, space.bundle,
         )  # fmt: skip
-        if top < 0:
-            return found, tally, segments
-        promising(agenda, top)
-        row = agenda.tiles[top]
-        work = Work(
-            Tile(row[0], row[1], row[2], row[3]), agenda.orders[top, 0], agenda.orders[top, 1],
-            agenda.kinds[top], agenda.shares[top], agenda.offs[top],
-        )  # fmt: skip
-        top -= 1
-        aim_at_tile(task, work.tile, work.n, work.m, work.kind, room.beam)
-        segments += follow(
-            task.faces, room.face, room.through, meetings, room.beam, work.n * work.m,
-            task.detector, task.focus, room.rays, room.bundle,
-        )  # fmt: skip
+        progress = traced(progress, segments)
 
 
 @register_jitable
 def _integrate_all(
-    task: Task, wide: Survey, close: Survey, orders: tuple[int, int], relative: float,
-    scale: float, budget: int, room: Room, found: Found,
-) -> tuple[Found, Tally, int, float]:  # fmt: skip
+    point: Point, wide: Survey, close: Survey, orders: tuple[int, int], relative: float,
+    scale: float, budget: int, space: Workspace, rays: WeightedRays,
+) -> tuple[WeightedRays, Progress, float]:  # fmt: skip
     """Integrate the paths of two surveys, the strongest first, until the rest may be left out.
 
-    Returns the nodes, what has become of all of them, the segments traced and the largest magnitude
-    of the field over the band.
+    Returns the rays, what has become of all of them, and the largest magnitude of the field over
+    the band.
     """
     bounds = np.concatenate((wide.bound, close.bound))
     sizes, reach = np.zeros(bounds.size), np.zeros(bounds.size)
     order = np.argsort(-bounds, kind="mergesort")
     rest = np.append(np.cumsum(bounds[order][::-1])[::-1], 0.0)
-    done, segments, all_paths = 0, 0, Tally(0, 0.0, 0.0, 0.0, 0.0)
+    done, paths = 0, Progress(0, 0.0, 0.0, 0.0, 0.0, 0)
     for p in order:
-        known = max(scale, _peak(sizes, reach, task.k_mid, task.k_max), 0.03 * rest[0])
-        if rest[done] <= SPARE * relative * known - all_paths.missing:
+        known = max(scale, _peak(sizes, reach, point.k_mid, point.k_max), 0.03 * rest[0])
+        if rest[done] <= SPARE * relative * known - paths.missing:
             break
         survey, number = (wide, p) if p < wide.code.size else (close, p - wide.code.size)
-        allowed = Allowed(
-            relative, known, all_paths.missing, survey.beyond, orders, (budget - segments) // 2
-        )
-        first = all_paths.nodes
-        found, tally, traced = _integrate_path(
-            task, survey.code[number], survey, number, allowed, room, found, first
-        )
-        sizes[p], reach[p] = _mean_of(found, first, tally.nodes)
-        segments += traced
-        all_paths = Tally(
-            tally.nodes, all_paths.size + tally.size, max(all_paths.filled, tally.filled),
-            all_paths.error + tally.error, all_paths.missing + tally.missing,
+        goal = PathGoal(
+            survey.code[number], relative, known, paths.missing, survey.extrapolation, orders,
+            (budget - paths.segments) // 2,
+        )  # fmt: skip
+        first = paths.nodes
+        rays, path = _integrate_path(point, goal, survey, number, space, rays, first)
+        sizes[p], reach[p] = _mean_of(rays, first, path.nodes)
+        paths = Progress(
+            path.nodes, paths.size + path.size, max(paths.filled, path.filled),
+            paths.error + path.error, paths.missing + path.missing,
+            paths.segments + path.segments,
         )  # fmt: skip
         done += 1
     return (
-        found,
-        Tally(
-            all_paths.nodes, all_paths.size, all_paths.filled, all_paths.error,
-            all_paths.missing + rest[done],
+        rays,
+        Progress(
+            paths.nodes, paths.size, paths.filled, paths.error, paths.missing + rest[done],
+            paths.segments,
         ),
-        segments,
-        _peak(sizes, reach, task.k_mid, task.k_max),
+        _peak(sizes, reach, point.k_mid, point.k_max),
     )  # fmt: skip
 
 
 @compiled()
 def _integrate(
-    task: Task, survey_orders: tuple[int, int], orders: tuple[int, int], max_intersections: int,
+    point: Point, survey_orders: tuple[int, int], orders: tuple[int, int], max_intersections: int,
     accuracy: float, budget: int,
 ) -> tuple[Any, ...]:  # fmt: skip
     # a plain tuple, as in trace_tree
-    room, found = room_for_point(), room_for_nodes(16 * HIGHEST * HIGHEST)
+    space, rays = room_for_point(), room_for_nodes(16 * HIGHEST * HIGHEST)
     accuracy = _MARGIN * accuracy
     faint, segments, scale, missing, count = 1e-3 * accuracy, 0, 0.0, 0.0, 0
     relative, status = _ONE_PATH * accuracy, AccuracyStatus.NOT_REACHED.value
-    multiplicity = images(task.symmetric)
+    multiplicity = images(point.symmetric)
     for _ in range(_ATTEMPTS):
-        wide, close, lost, traced = survey_aperture(
-            task, survey_orders, max_intersections, faint, room
+        wide, close, lost, surveyed = survey_aperture(
+            point, survey_orders, max_intersections, faint, space
         )
-        segments += traced
-        found, tally, traced, scale = _integrate_all(
-            task, wide, close, orders, relative, scale, budget - segments, room, found
+        segments += surveyed
+        rays, paths, scale = _integrate_all(
+            point, wide, close, orders, relative, scale, budget - segments, space, rays
         )
-        segments += traced
-        count = tally.nodes
-        share = min(multiplicity * tally.filled, share_of_faint(close, 100 * faint))
-        faint_field = 0.5 * lost * faint * share
-        missing = tally.missing + faint_field
+        segments += paths.segments
+        count = paths.nodes
+        seen = min(multiplicity * paths.filled, part_of_faint(close, 100 * faint))
+        faint_field = 0.5 * lost * faint * seen
+        missing = paths.missing + faint_field
         if segments > 0.9 * budget:
             status = AccuracyStatus.BUDGET_SPENT.value
             break
         # |ΔI| = 2 |E| |ΔE|
-        if 2 * (tally.error + missing) <= accuracy * scale or count == 0:
+        if 2 * (paths.error + missing) <= accuracy * scale or count == 0:
             status = AccuracyStatus.REACHED.value
             break
         if faint_field > 0.1 * accuracy * scale:
@@ -179,28 +180,27 @@ def _integrate(
         else:
             relative *= 0.3
     return (
-        found.path[:count].copy(), found.amplitude[:count].copy(), found.rough[:count].copy(),
-        found.optical_path_length[:count].copy(), missing, segments, status,
+        rays.path[:count].copy(), rays.amplitude[:count].copy(),
+        rays.rough_amplitude[:count].copy(), rays.optical_path_length[:count].copy(), missing,
+        segments, status,
     )  # fmt: skip
 
 
-def symmetric_in_x(scene: Scene) -> bool:
-    """Tell whether the mirror image of a scene in the plane x = 0 is the scene itself."""
-    return all(s.x == 0 for s in scene.surfaces if isinstance(s, Cylinder))
-
-
-def light_misses(scene: Scene, detector: Detector, focus: float) -> bool:
-    """Tell whether the outermost light, to either side in x, meets planes alone."""
-    if not any(isinstance(surface, Cylinder) for surface in scene.surfaces):
+def light_misses(scene: Scene, point: Point) -> bool:
+    """Return whether the outermost light, to either side in x, meets planes alone."""
+    flat = tuple(surface for surface in scene.surfaces if isinstance(surface, Plane))
+    if len(flat) == len(scene.surfaces):
         return False
+    detector = point.detector
     radius = np.array([-detector.objective_radius, detector.objective_radius])
     vx, vy, vz = aim(radius, np.zeros(2), detector.focus_distance)
-    planes = replace(
-        scene, surfaces=tuple(s for s in scene.surfaces if not isinstance(s, Cylinder))
-    )
-    for side in (1,) if symmetric_in_x(scene) else (0, 1):
+    planes = faces_at(replace(scene, surfaces=flat), point.k_mid)
+    for side in (1,) if point.symmetric else (0, 1):
         beam = Beam(vx[[side]], vy[[side]], vz[[side]], np.ones(1), np.zeros(1, np.int64))
-        met = [trace(which, beam, detector, focus, 3).segments for which in (scene, planes)]
+        met = [
+            trace_amplitudes(faces, beam, detector, acceptance(detector), point.focus, 3, 0.0)[2]
+            for faces in (point.faces, planes)
+        ]
         if met[0] == met[1]:
             return True
     return False
@@ -225,7 +225,8 @@ def integrate(
     Parameters
     ----------
     scene : Scene
-        Surfaces and media; the objective lies in the glass below them.
+        Surfaces, and the regions between them; its own mirror image in the plane y = 0. Materials
+        are taken at the middle of the band.
     detector : Detector
         What receives the rays that return.
     focus : float
@@ -247,17 +248,20 @@ def integrate(
     Raises
     ------
     ValueError
-        As `octsim.tracing.tree.trace` does.
+        As `octsim.tracing.tree.check_reach` does, or if the scene lacks that symmetry.
     """
     check_reach(scene, detector, focus, max_intersections)
-    symmetric = symmetric_in_x(scene)
+    symmetric, mirrored = scene.symmetry
+    if not mirrored:
+        raise ValueError("the scene is not symmetric in y, which scheme paths takes for granted")
     low, high = band
-    task = Task(
-        faces_of(scene), symmetric, detector, focus, (low + high) / 2, high,
+    middle = (low + high) / 2
+    point = Point(
+        faces_at(scene, middle), symmetric, detector, focus, middle, high,
         *tables(symmetric), *tables(True), rules(),
     )  # fmt: skip
     path, amplitude, rough_amplitude, optical_path_length, missing, segments, status = _integrate(
-        task, *_orders(accuracy, symmetric), max_intersections, accuracy, budget
+        point, *_orders(accuracy, symmetric), max_intersections, accuracy, budget
     )
     return Light(
         path,
@@ -267,13 +271,13 @@ def integrate(
         missing,
         segments,
         AccuracyStatus.AT_AN_EDGE
-        if status == AccuracyStatus.REACHED and light_misses(scene, detector, focus)
+        if status == AccuracyStatus.REACHED and light_misses(scene, point)
         else AccuracyStatus(status),
     )
 
 
 def _orders(accuracy: float, symmetric: bool) -> tuple[tuple[int, int], tuple[int, int]]:
-    """Give the number of nodes along each axis to begin with: of the survey and of a tile."""
+    """Return the numbers of nodes along each axis to begin with: of the survey and of a tile."""
     digits = -math.log10(accuracy)
     along_s = min(max(3, round(2 + digits)), 9)
     along_v = max(3, along_s - 2)

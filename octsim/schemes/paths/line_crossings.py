@@ -13,6 +13,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from octsim.optics.detector import falloff
 from octsim.schemes.paths.aperture_tiles import Tile
 from octsim.schemes.paths.chebyshev import HIGHEST, polynomials
 
@@ -34,7 +35,7 @@ class Map(NamedTuple):
     cos: NDArray[np.float64]
     """cos θ."""
     inside: NDArray[np.float64]
-    """cos² θ (1 − (radius at the objective / that of its rim)²)."""
+    """`octsim.optics.detector.rim_margin`."""
 
 
 class Line(NamedTuple):
@@ -104,7 +105,7 @@ def set_line(cut: Cut, xi: float, line: Line) -> None:
 
 @register_jitable
 def margins(cut: Cut, xi: float, line: Line, y: float) -> tuple[float, float, float]:
-    """Tell how far inside the detector's image, and the objective's rim, light returns (> 0).
+    """Return how far inside the detector's image, and the objective's rim, light returns (> 0).
 
     And how far to the side of the focus, over R_det, which changes its sign within a patch.
     """
@@ -123,14 +124,14 @@ def margins(cut: Cut, xi: float, line: Line, y: float) -> tuple[float, float, fl
 
 @register_jitable(forceinline=True)
 def margin(cut: Cut, xi: float, line: Line, y: float) -> float:
-    """Tell how far inside the patch a place on a line is (> 0)."""
+    """Return how far inside the patch a place on a line is (> 0)."""
     at_detector, at_rim, _ = margins(cut, xi, line, y)
     return min(at_detector, at_rim)
 
 
 @register_jitable
 def falloffs(cut: Cut, xi: float, line: Line, y: float) -> tuple[float, float]:
-    """Give the falloff at a place on a line, and that from a rougher map."""
+    """Return the falloff at a place on a line, and that from a rougher map."""
     tile, m = cut.tile, cut.m
     polynomials((y * y - tile.v_min) / (tile.v_max - tile.v_min), m, line.u)
     to_x, to_y, cos = 0.0, 0.0, 0.0
@@ -145,14 +146,14 @@ def falloffs(cut: Cut, xi: float, line: Line, y: float) -> tuple[float, float]:
     scale_x = xi * math.sqrt(1 - y * y) if cut.symmetric else 1.0
     scale_x, scale_y = scale_x / (cos * cut.detector_radius), y / (cos * cut.detector_radius)
     return (
-        1 - (to_x * scale_x) ** 2 - (to_y * scale_y) ** 2,
-        1 - (rough_x * scale_x) ** 2 - (rough_y * scale_y) ** 2,
+        falloff((to_x * scale_x) ** 2, (to_y * scale_y) ** 2),
+        falloff((rough_x * scale_x) ** 2, (rough_y * scale_y) ** 2),
     )
 
 
 @register_jitable
 def _falsi(low: float, at_low: float, high: float, at_high: float) -> float:
-    """Give the next place to look for a zero between two of different sign (false position)."""
+    """Return where to look next for a zero between two of different sign (false position)."""
     x = (low * at_high - high * at_low) / (at_high - at_low)
     return x if min(low, high) < x < max(low, high) else 0.5 * (low + high)
 
@@ -172,7 +173,7 @@ def _narrowed(
 
 @register_jitable
 def edge(cut: Cut, xi: float, line: Line, low: float, high: float) -> float:
-    """Find where the margin along a line changes its sign (Illinois)."""
+    """Return where the margin along a line changes its sign (Illinois)."""
     at_low, at_high, side = margin(cut, xi, line, low), margin(cut, xi, line, high), 0
     y = low
     for _ in range(_STEPS):
@@ -186,7 +187,7 @@ def edge(cut: Cut, xi: float, line: Line, low: float, high: float) -> float:
 
 @register_jitable
 def end_of(cut: Cut, line: Line, y: float, which: int, low: float, high: float) -> float:
-    """Find the ξ at which one of the margins at one y changes its sign (Illinois)."""
+    """Return the ξ at which one of the margins at one y changes its sign (Illinois)."""
     set_line(cut, low, line)
     at_low = margins(cut, low, line, y)[which]
     set_line(cut, high, line)
@@ -204,7 +205,7 @@ def end_of(cut: Cut, line: Line, y: float, which: int, low: float, high: float) 
 
 @register_jitable(forceinline=True)
 def turns(left: float, middle: float, right: float) -> bool:
-    """Tell whether three margins of one sign come nearest to zero in the middle."""
+    """Return whether three margins of one sign come nearest to zero in the middle."""
     if middle > 0:
         return left > 0 and right > 0 and min(left, right) >= middle and left + right > 2 * middle
     return left <= 0 and right <= 0 and max(left, right) <= middle and left + right < 2 * middle
@@ -238,7 +239,7 @@ def _sample(cut: Cut, xi: float, line: Line) -> int:
 
 @register_jitable
 def cross(cut: Cut, xi: float, line: Line) -> int:
-    """List where the line at ξ enters and leaves the patch, in pairs; give their number."""
+    """List where the line at ξ enters and leaves the patch, in pairs; return how many."""
     set_line(cut, xi, line)
     num, found = _sample(cut, xi, line), 0
     if line.margins[0] > 0:
@@ -256,7 +257,7 @@ def cross(cut: Cut, xi: float, line: Line) -> int:
 
 @register_jitable
 def kind_of(cut: Cut, xi: float, line: Line) -> tuple[int, bool, bool]:
-    """Tell how a line crosses the patch: how often, and whether at its ends."""
+    """Return how a line crosses the patch: how often, and whether at its ends."""
     set_line(cut, xi, line)
     num = _sample(cut, xi, line)
     changes = 0

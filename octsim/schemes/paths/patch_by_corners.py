@@ -1,6 +1,7 @@
-"""Where in a tile a patch can be of a path that not all rays take, and what it may contribute.
+"""Where in a partially covered tile a patch can be, and what it may contribute.
 
-Nothing is fitted here: the cells between a tile's nodes are judged by their corners.
+Not all rays of such a tile take the path, so that nothing is fitted: the cells between its nodes
+are judged by their corners.
 """
 
 import math
@@ -14,14 +15,14 @@ from octsim.schemes.paths.aperture_tiles import Tile, between, fraction
 from octsim.tracing.follow import Bundle
 
 USUALLY, NEAR_AN_EDGE = 0.5, 1.0
-"""How far a quantity may go on beyond known corners; and where light can miss a cylinder."""
+"""How far a quantity may go on past known corners; and where light can miss a cylinder."""
 
 
 @register_jitable
 def _variation(
     values: NDArray[np.float64], followed: NDArray[np.bool_], n: int, m: int, i: int, j: int
 ) -> float:
-    """Largest difference of a quantity at a node from that at its neighbours."""
+    """Return the largest difference of a quantity at a node from that at its neighbours."""
     here, most = values[i * m + j], 0.0
     for step_i, step_j in ((-1, 0), (1, 0), (0, -1), (0, 1)):
         p, q = i + step_i, j + step_j
@@ -38,9 +39,9 @@ def _span(
     m: int,
     i: int,
     j: int,
-    beyond: float,
+    extrapolation: float,
 ) -> tuple[float, float, float]:
-    """Give between what bounds a quantity is in a cell, as its corners tell, and its variation."""
+    """Return the bounds of a quantity in a cell, as its corners tell, and its variation."""
     least, most, vary, known = np.inf, -np.inf, 0.0, 0
     for p in (i, i + 1):
         for q in (j, j + 1):
@@ -48,7 +49,7 @@ def _span(
                 least, most = min(least, values[p * m + q]), max(most, values[p * m + q])
                 vary = max(vary, _variation(values, followed, n, m, p, q))
                 known += 1
-    slack = beyond * vary
+    slack = extrapolation * vary
     if known == 4:
         vary = most - least
         slack = 0.5 * vary
@@ -58,8 +59,8 @@ def _span(
 
 
 @register_jitable(forceinline=True)
-def _share(span: tuple[float, float, float], radius: float) -> float:
-    """Estimate the share of a cell in which a quantity is within a radius; 0 if in none."""
+def _part_within(span: tuple[float, float, float], radius: float) -> float:
+    """Estimate the part of a cell in which a quantity is within a radius; 0 if in none."""
     low, high, vary = span
     if low > radius or high < -radius:
         return 0.0
@@ -67,8 +68,8 @@ def _share(span: tuple[float, float, float], radius: float) -> float:
 
 
 @register_jitable(forceinline=True)
-def _share_at_axis(value: float, place: float, width: float, radius: float) -> float:
-    """Estimate that share for a cell at an axis, of a quantity that is odd in a coordinate.
+def _part_at_axis(value: float, place: float, width: float, radius: float) -> float:
+    """Estimate that part for a cell at an axis, of a quantity that is odd in a coordinate.
 
     By its slope there, known from its value at a place close to the axis.
     """
@@ -79,7 +80,7 @@ def _share_at_axis(value: float, place: float, width: float, radius: float) -> f
 @register_jitable
 def _cell(
     bundle: Bundle, n: int, m: int, i: int, j: int, cell: Tile, start: Tile, symmetric: bool,
-    detector_radius: float, beyond: float,
+    detector_radius: float, extrapolation: float,
 ) -> float:  # fmt: skip
     """Estimate the field, over that of all light, that a cell between four nodes contributes.
 
@@ -98,37 +99,37 @@ def _cell(
                     not on_axis
                     and max(abs(bundle.x[k]), abs(bundle.y[k])) < detector_radius * bundle.cos[k]
                 )
-    if amplitude == 0 or _span(bundle.inside, followed, n, m, i, j, beyond)[1] < 0:
+    if amplitude == 0 or _span(bundle.inside, followed, n, m, i, j, extrapolation)[1] < 0:
         return 0.0
     amplitude, all_light = amplitude / known, fraction(cell, symmetric)
     if within:
         return amplitude * all_light
-    share_x = _share(_span(bundle.x, followed, n, m, i, j, beyond), detector_radius)
-    share_y = _share(_span(bundle.y, followed, n, m, i, j, beyond), detector_radius)
+    part_x = _part_within(_span(bundle.x, followed, n, m, i, j, extrapolation), detector_radius)
+    part_y = _part_within(_span(bundle.y, followed, n, m, i, j, extrapolation), detector_radius)
     at_axis_x, at_axis_y = i == 0 and symmetric and cell.s_min == 0, j == 0 and cell.v_min == 0
     near_x, near_y = 0.0, 0.0
     if at_axis_x and followed[here]:
-        near_x = _share_at_axis(
+        near_x = _part_at_axis(
             bundle.x[here], math.sqrt(start.s_min), math.sqrt(cell.s_max), detector_radius
         )
         if not (followed[here + m] or followed[here + m + 1]):
-            share_x = near_x
+            part_x = near_x
     if at_axis_y and followed[here]:
-        near_y = _share_at_axis(
+        near_y = _part_at_axis(
             bundle.y[here], math.sqrt(start.v_min), math.sqrt(cell.v_max), detector_radius
         )
         if not (followed[here + 1] or followed[here + m + 1]):
-            share_y = near_y
+            part_y = near_y
     if at_axis_x and at_axis_y and followed[here] and max(near_x, near_y) < 0.7:
         # a small ellipse about the axis, with the falloff's mean: 0.5 π/4, and a margin of 0.1
         at_axis: float = 0.5 * abs(bundle.amplitude[here])
         return at_axis * all_light * near_x * near_y
-    return amplitude * all_light * max(share_x, near_x) * max(share_y, near_y)
+    return amplitude * all_light * max(part_x, near_x) * max(part_y, near_y)
 
 
 @register_jitable
 def corner(followed: NDArray[np.bool_], n: int, m: int) -> tuple[int, int]:
-    """Give the largest p x q nodes next to the axes that all take a path, at least 3 x 3; or 0."""
+    """Return the largest p x q nodes at the axes that all take a path, at least 3 x 3, or 0."""
     best, sides, rows = 0, (0, 0), m
     for i in range(n):
         row = 0
@@ -152,13 +153,13 @@ class Cells(NamedTuple):
 @register_jitable
 def reached(
     bundle: Bundle, n: int, m: int, along_s: NDArray[np.float64], along_v: NDArray[np.float64],
-    tile: Tile, cells: Cells, symmetric: bool, detector_radius: float, beyond: float,
+    tile: Tile, cells: Cells, symmetric: bool, detector_radius: float, extrapolation: float,
 ) -> tuple[float, Tile]:  # fmt: skip
-    """Find the part of some cells that the patch can be in, of a path that not all rays take.
+    """Return the part of some cells of a partially covered tile that the patch can be in.
 
     Nothing is fitted; cells between nodes are left out if their corners are well beside the
     detector or beyond the objective's rim, or if no corner takes the path. Towards a corner that is
-    not known a quantity may go on by `beyond` times what it varies between known ones.
+    not known a quantity may go on by `extrapolation` times what it varies between known ones.
 
     Returns
     -------
@@ -175,7 +176,7 @@ def reached(
             start = Tile(
                 tile.s_min + s * along_s[i], tile.s_max, tile.v_min + v * along_v[j], tile.v_max
             )
-            here = _cell(bundle, n, m, i, j, cell, start, symmetric, detector_radius, beyond)
+            here = _cell(bundle, n, m, i, j, cell, start, symmetric, detector_radius, extrapolation)
             if here > 0:
                 left, right = min(left, i), max(right, i)
                 below, above = min(below, j), max(above, j)

@@ -37,7 +37,7 @@ def room_for_search() -> Search:
 
 @register_jitable(forceinline=True)
 def _reaches(a: float, b: float, c: float, d: float, slack: float, radius: float) -> bool:
-    """Tell whether a coordinate with these values at a cell's corners may come within a radius."""
+    """Return whether a coordinate with these values at a cell's corners may be within a radius."""
     low, high = min(a, b, c, d), max(a, b, c, d)
     more = slack + 0.25 * (high - low)
     return low - more < radius and high + more > -radius
@@ -45,7 +45,7 @@ def _reaches(a: float, b: float, c: float, d: float, slack: float, radius: float
 
 @register_jitable(forceinline=True)
 def _exceeds(a: float, b: float, c: float, d: float, slack: float) -> bool:
-    """Tell whether a quantity with these values at a cell's corners may be above zero."""
+    """Return whether a quantity with these values at a cell's corners may be above zero."""
     low, high = min(a, b, c, d), max(a, b, c, d)
     return high + slack + 0.25 * (high - low) > 0
 
@@ -99,14 +99,14 @@ def _lay_out(returns: Map, n: int, m: int, tile: Tile, symmetric: bool, room: Se
 def holding(
     returns: Map, n: int, m: int, tile: Tile, symmetric: bool, detector_radius: float, room: Search
 ) -> tuple[float, Tile]:
-    """Find the part of a tile that the patch can be in, as far as the tile's polynomials tell.
+    """Return the part of a tile that the patch can be in, as far as the tile's polynomials tell.
 
     What the highest order adds is taken for their error.
 
     Returns
     -------
-    share : float
-        Share of the tile's cells that the patch can be in; 0 if there is no patch.
+    filled : float
+        Part of the tile's cells that the patch can be in; 0 if there is no patch.
     within : Tile
         The part.
     """

@@ -42,7 +42,7 @@ class Rules(NamedTuple):
 
 @cache
 def rules() -> Rules:
-    """Make the quadrature rules."""
+    """Return the quadrature rules."""
     most = HIGHEST + 6
     nodes, weights = np.zeros((most, most)), np.zeros((most, most))
     for q in range(1, most):

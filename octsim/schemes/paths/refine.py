@@ -1,6 +1,6 @@
 """One light path integrated over its patch: tiles shrunk, given more nodes, or cut in two.
 
-A tile that all rays take the path of is fitted with polynomials; of one that they do not all take,
+A tile that all rays take the path of is fitted with polynomials; of a *partially covered* one, the
 cells between its nodes are judged by their corners. Each ends in weighted nodes whose error is
 allowed, or is left out as too faint to matter.
 """
@@ -16,6 +16,7 @@ from octsim.schemes.paths.chebyshev import FIT, HIGHEST, LOOK
 from octsim.schemes.paths.line_crossings import LESS_S, LESS_V
 from octsim.schemes.paths.patch_by_corners import Cells, corner, reached
 from octsim.schemes.paths.patch_by_fit import holding
+from octsim.schemes.paths.progress import PathGoal, Progress, left_out, spare
 from octsim.schemes.paths.tile_nodes import (
     CRUDE,
     field_errors,
@@ -28,129 +29,81 @@ from octsim.schemes.paths.tile_nodes import (
     weigh,
     weigh_crudely,
 )
-from octsim.schemes.paths.waiting_tiles import push, push_halves
-from octsim.schemes.paths.workspace import MOST_TILES, Agenda, Found, Room, Task
-from octsim.tracing.blocks import LANES
+from octsim.schemes.paths.waiting_tiles import MOST_TILES, OpenTile, push, push_halves
+from octsim.schemes.paths.workspace import Point, WeightedRays, Workspace
+from octsim.tracing.lanes import LANES
 
 MIXED = 4
-"""Nodes along each axis of a tile of which not all rays take the path."""
-SPARE = 2.5
-"""What may be left out of all paths, over the error that one path may have."""
+"""Nodes along each axis of a partially covered tile."""
 # by how much an error falls with each order, typically (its logarithm)
 _RATE_S, _RATE_V = 1.2, 2.5
 
 
-class Work(NamedTuple):
-    """A tile under work."""
+class Errors(NamedTuple):
+    """Error estimate of a fitted tile: along s, along v, and in all."""
 
-    tile: Tile
-    n: int
-    m: int
-    kind: int
-    share: float
-    """Of the error that is allowed."""
-    given: float
-    """Error with fewer nodes; infinite if there were none."""
-
-
-class Allowed(NamedTuple):
-    """What one path's error may be."""
-
-    relative: float
-    """Over the field."""
-    scale: float
-    """Field of all paths, as far as it is known."""
-    left_out: float
-    """Field left out already, of other paths."""
-    beyond: float
-    """How far quantities may go on beyond known corners; see `patch_by_corners`."""
-    orders: tuple[int, int]
-    """Numbers of nodes along s and v to begin with."""
-    budget: int
-    """Segments that may be traced."""
-
-
-class Tally(NamedTuple):
-    """What has become of a path so far."""
-
-    nodes: int
-    """Nodes kept, of all paths."""
-    size: float
-    """Sum of the tiles' fields, as magnitudes."""
-    filled: float
-    """Integral of the falloff over the patch."""
-    error: float
-    missing: float
-    """Field that was left out."""
-
-
-@register_jitable(forceinline=True)
-def _spare(allowed: Allowed, tally: Tally) -> float:
-    """Give what may still be left out."""
-    may = SPARE * allowed.relative * max(allowed.scale, tally.size)
-    return max(may - allowed.left_out - tally.missing, 0.0)
-
-
-@register_jitable(forceinline=True)
-def _left_out(tally: Tally, field: float) -> Tally:
-    return Tally(tally.nodes, tally.size, tally.filled, tally.error, tally.missing + field)
+    along_s: float
+    along_v: float
+    total: float
 
 
 @register_jitable
 def _kept(
-    found: Found, code: int, work: Work, room: Room, tally: Tally, size: float, filled: float,
-    error: float,
-) -> tuple[Found, Tally]:  # fmt: skip
-    found, count = keep_tile(found, tally.nodes, code, work.n, work.m, room)
-    return found, Tally(
-        count, tally.size + size, tally.filled + filled, tally.error + error, tally.missing
-    )
+    rays: WeightedRays, goal: PathGoal, work: OpenTile, space: Workspace, progress: Progress,
+    size: float, filled: float, error: float,
+) -> tuple[WeightedRays, Progress]:  # fmt: skip
+    rays, count = keep_tile(rays, progress.nodes, goal.code, work.n, work.m, space)
+    return rays, Progress(
+        count, progress.size + size, progress.filled + filled, progress.error + error,
+        progress.missing, progress.segments,
+    )  # fmt: skip
 
 
 @register_jitable
 def typical_orders(ratio: float) -> tuple[int, int]:
-    """Give the orders along s and v that a patch's tile typically needs, for a field over error."""
+    """Return the orders along s and v that a patch's tile typically needs, by field over error."""
     digits = max(math.log10(ratio) - 0.7, 0.0)
     return max(4, round(1.7 * digits + 1.5)), max(3, round(0.7 * digits + 2))
 
 
 @register_jitable
 def raise_orders(
-    tile: Tile, smaller: Tile, n: int, m: int, off_s: float, off_v: float, tolerance: float
+    work: OpenTile, smaller: Tile, errors: Errors, tolerance: float
 ) -> tuple[int, int]:
-    """Tell how many nodes a tile's shrunk part needs along each axis for an error in tolerance.
+    """Return how many nodes a tile's shrunk part needs along each axis for an error in tolerance.
 
     From the errors of the tile itself along s and v, and how errors fall, typically.
     """
+    tile, n, m = work.tile, work.n, work.m
     narrower_s = (smaller.s_max - smaller.s_min) / (tile.s_max - tile.s_min)
     narrower_v = (smaller.v_max - smaller.v_min) / (tile.v_max - tile.v_min)
-    off_s *= narrower_s ** (n - LESS_S)
-    off_v *= narrower_v ** (m - LESS_V)
-    more_s = math.ceil(math.log(max(2 * off_s / tolerance, 1.0)) / _RATE_S)
-    more_v = math.ceil(math.log(max(2 * off_v / tolerance, 1.0)) / _RATE_V)
+    error_s = errors.along_s * narrower_s ** (n - LESS_S)
+    error_v = errors.along_v * narrower_v ** (m - LESS_V)
+    more_s = math.ceil(math.log(max(2 * error_s / tolerance, 1.0)) / _RATE_S)
+    more_v = math.ceil(math.log(max(2 * error_v / tolerance, 1.0)) / _RATE_V)
     if more_s + more_v == 0 and narrower_s * narrower_v > 0.6:
-        more_s, more_v = (1, 0) if off_s > off_v else (0, 1)
+        more_s, more_v = (1, 0) if error_s > error_v else (0, 1)
     return n + min(more_s, 6), m + min(more_v, 2)
 
 
 @register_jitable
 def _look(
-    task: Task,
-    agenda: Agenda,
-    top: int,
-    work: Work,
-    spare: float,
-    beyond: float,
-    room: Room,
-) -> tuple[int, float, Work]:
-    """Have the parts of a tile wait of which not all rays take the path, or leave them out.
+    point: Point, work: OpenTile, may_miss: float, extrapolation: float, space: Workspace
+) -> tuple[float, OpenTile]:
+    """Have the parts of a partially covered tile wait, or leave them out if they are faint.
 
-    Returns the new top, what is left out, and the corner next to the axes, if all rays of p x q
-    nodes there do take it; its n is 0 if there is none.
+    `may_miss` is the field that may still be left out.
+
+    Returns
+    -------
+    missing : float
+        Field that is left out.
+    covered : OpenTile
+        The corner next to the axes whose nodes all take the path; its n is 0 if there is none.
     """
-    tile, n, m, kind, share, _ = work
-    along_s, along_v, radius = task.nodes_s[kind, n], task.nodes_v[kind, m], task.detector.radius
-    p, q = corner(room.bundle.followed, n, m) if kind == LOOK else (0, 0)
+    tile, n, m, kind, allotment, _, _ = work
+    along_s, along_v, radius = point.nodes_s[kind, n], point.nodes_v[kind, m], point.detector.radius
+    p, q = corner(space.bundle.followed, n, m) if kind == LOOK else (0, 0)
     missing = 0.0
     # all of the tile, or what lies to the right of the corner and above it
     parts = (
@@ -159,155 +112,145 @@ def _look(
     )
     for cells in parts:
         bound, part = reached(
-            room.bundle, n, m, along_s, along_v, tile, cells, task.symmetric, radius, beyond
-        )
-        if bound <= 0.25 * max(spare - missing, 0.0):
+            space.bundle, n, m, along_s, along_v, tile, cells, point.symmetric, radius,
+            extrapolation,
+        )  # fmt: skip
+        rest = OpenTile(part, MIXED, MIXED, LOOK, allotment, bound, np.inf)
+        if bound <= 0.25 * max(may_miss - missing, 0.0):
             missing += bound
-        elif area(part, task.symmetric) < 0.6 * area(tile, task.symmetric):
-            top = push(agenda, top, part, MIXED, MIXED, LOOK, share, bound, np.inf)
+        elif area(part, point.symmetric) < 0.6 * area(tile, point.symmetric):
+            push(space.waiting, rest)
         else:
-            top = push_halves(task, agenda, top, part, MIXED, MIXED, LOOK, share, bound)
+            push_halves(space.waiting, rest, point.symmetric)
     if p == 0:
-        return top, missing, Work(tile, 0, 0, kind, share, np.inf)
+        return missing, OpenTile(tile, 0, 0, kind, allotment, 0.0, np.inf)
     near = between(tile, n, m, along_s, along_v, 0, p - 1, 0, q - 1)
-    return top, missing, Work(near, p, q, kind, share, np.inf)
+    return missing, OpenTile(near, p, q, kind, allotment, 0.0, np.inf)
 
 
 @register_jitable
 def _refine(
-    task: Task, agenda: Agenda, top: int, work: Work, smaller: Tile, orders: tuple[int, int],
-    empty: bool, off: float, off_s: float, off_v: float, tolerance: float, bound: float,
-) -> int:  # fmt: skip
+    point: Point, work: OpenTile, rest: OpenTile, empty: bool, errors: Errors, tolerance: float,
+    space: Workspace,
+) -> None:  # fmt: skip
     """Have what is left of a fitted tile wait: as it is, with more nodes, or in halves.
 
-    `off` is its error, `off_s` and `off_v` the parts along s and v; `empty` is one where no patch
-    is seen, though there may be one; `bound` is what its field may be.
+    `rest` is that part, with the orders to begin with; `empty` is a tile where no patch is seen,
+    though there may be one.
     """
     n, m, expected = work.n, work.m, np.inf
-    shrinks = area(smaller, task.symmetric) / area(work.tile, task.symmetric)
+    shrinks = area(rest.tile, point.symmetric) / area(work.tile, point.symmetric)
     if shrinks < 0.5:
-        n, m = typical_orders(bound / tolerance)
-    elif off > 0.5 * work.given:
+        n, m = typical_orders(rest.bound / tolerance)
+    elif errors.total > 0.5 * work.coarser_error:
         n, m = LANES, LANES  # more nodes do not help
     elif empty:
-        n, m, expected = n + 2, m + 1, off
+        n, m, expected = n + 2, m + 1, errors.total
     else:
-        n, m = raise_orders(work.tile, smaller, n, m, off_s, off_v, tolerance)
-        expected = off
+        n, m = raise_orders(work, rest.tile, errors, tolerance)
+        expected = errors.total
     if n <= HIGHEST and m <= HIGHEST and n * m <= LANES:
-        return push(agenda, top, smaller, n, m, FIT, work.share, bound, expected)
-    n, m = orders
-    if shrinks < 0.5:
-        return push(agenda, top, smaller, n, m, FIT, work.share, bound, np.inf)
-    return push_halves(task, agenda, top, smaller, n, m, FIT, work.share, bound)
+        push(space.waiting, OpenTile(rest.tile, n, m, FIT, rest.allotment, rest.bound, expected))
+    elif shrinks < 0.5:
+        push(space.waiting, rest)
+    else:
+        push_halves(space.waiting, rest, point.symmetric)
 
 
 @register_jitable
 def _fit(
-    task: Task, code: int, agenda: Agenda, top: int, work: Work, smaller: Tile, field: float,
-    strongest: float, allowed: Allowed, end: bool, room: Room, found: Found, tally: Tally,
-) -> tuple[Found, int, Tally]:  # fmt: skip
+    point: Point, goal: PathGoal, work: OpenTile, rest: OpenTile, strongest: float, end: bool,
+    space: Workspace, rays: WeightedRays, progress: Progress,
+) -> tuple[WeightedRays, Progress]:  # fmt: skip
     """Keep a fitted tile's nodes if their error is allowed, else refine it.
 
-    `field` is what the part that the patch can be in may contribute, `strongest` the largest
-    amplitude.
+    `rest` is the part that the patch can be in, `strongest` the largest amplitude.
     """
-    tile, n, m, _, share, _ = work
-    relative = allowed.relative * share
-    tolerance = relative * max(allowed.scale, tally.size)
-    map_s, map_v = map_errors(task, tile, n, m, room)
-    field_s, field_v = field_errors(task, n, m, room)
-    rim_s, rim_v = rim_errors(n, m, room)
+    tile, n, m, field = work.tile, work.n, work.m, rest.bound
+    relative = goal.relative * work.allotment
+    tolerance = relative * max(goal.scale, progress.size)
+    map_s, map_v = map_errors(point, tile, n, m, space)
+    field_s, field_v = field_errors(point, n, m, space)
+    rim_s, rim_v = rim_errors(n, m, space)
     # of a field of that size at each place, with half the falloff
     typical = 0.5 * field
-    off_s = typical * (field_s / strongest + map_s + rim_s)
-    off_v = typical * (field_v / strongest + map_v + rim_v)
-    off, total, size = off_s + off_v, -1.0, 0.0
+    error_s = typical * (field_s / strongest + map_s + rim_s)
+    error_v = typical * (field_v / strongest + map_v + rim_v)
+    error, total, size = error_s + error_v, -1.0, 0.0
     # the integral costs more than a look at the coefficients, which overestimates the error
-    if end or off <= 30 * max(tolerance, relative * typical):
+    if end or error <= 30 * max(tolerance, relative * typical):
         close = 0.1 * max(tolerance, 0.1 * relative * field) / strongest
-        total = weigh(task, tile, n, m, close, room)
-        size, off = sum_tile(task, n, m, room)
-        off += (rim_s + rim_v) * total * strongest
-        tolerance = relative * max(allowed.scale, tally.size + size)
-    if total > 0 and (off <= tolerance or end):
-        found, tally = _kept(found, code, work, room, tally, size, total, off)
-        return found, top, tally
+        total = weigh(point, tile, n, m, close, space)
+        size, error = sum_tile(point, n, m, space)
+        error += (rim_s + rim_v) * total * strongest
+        tolerance = relative * max(goal.scale, progress.size + size)
+    if total > 0 and (error <= tolerance or end):
+        return _kept(rays, goal, work, space, progress, size, total, error)
     # where no patch is seen there is at most a rim, as faint as the map's error leaves room for
     rim = field * min(1.0, 4 * (map_s + map_v))
-    if end or (total == 0 and rim <= 0.25 * _spare(allowed, tally)):
-        return found, top, _left_out(tally, rim)
-    top = _refine(
-        task, agenda, top, work, smaller, allowed.orders, total == 0, off, off_s, off_v,
-        max(tolerance, relative * typical), field,
+    if end or (total == 0 and rim <= 0.25 * spare(goal, progress)):
+        return rays, left_out(progress, rim)
+    _refine(
+        point, work, rest, total == 0, Errors(error_s, error_v, error),
+        max(tolerance, relative * typical), space,
     )  # fmt: skip
-    return found, top, tally
+    return rays, progress
 
 
 @register_jitable
 def settle(
-    task: Task, code: int, agenda: Agenda, top: int, work: Work, allowed: Allowed, spent: bool,
-    looked: bool, room: Room, found: Found, tally: Tally,
-) -> tuple[Found, int, Tally]:  # fmt: skip
+    point: Point, goal: PathGoal, work: OpenTile, space: Workspace, rays: WeightedRays,
+    progress: Progress,
+) -> tuple[WeightedRays, Progress]:  # fmt: skip
     """Deal with the tile whose rays a bundle holds: keep its nodes, refine it or leave it out.
 
     Parameters
     ----------
-    task : Task
-        The point.
-    code : int
-        Code of the path.
-    agenda : Agenda
-        Tiles that wait.
-    top : int
-        Number of the last one.
-    work : Work
+    point : Point
+        What is integrated.
+    goal : PathGoal
+        The path, and what its error may be.
+    work : OpenTile
         The tile.
-    allowed : Allowed
-        What the error may be.
-    spent : bool
-        Whether no more segments may be traced.
-    looked : bool
-        Whether this is not the survey's look at the whole aperture.
-    room : Room
-        The bundle, and room to work in.
-    found : Found
+    space : Workspace
+        The bundle, the tiles that wait, and room to work in.
+    rays : WeightedRays
         Nodes kept.
-    tally : Tally
+    progress : Progress
         What has become of the path.
 
     Returns
     -------
-    found, top, tally
-        All three as they are then.
+    rays, progress
+        Both as they are then.
     """
-    stride, end = work.m, spent or top + 6 > MOST_TILES
-    followed, strongest = followed_of(room, work.n * work.m)
+    stride, symmetric = work.m, point.symmetric
+    end = progress.segments > goal.budget or space.waiting.size[0] + 5 > MOST_TILES
+    followed, strongest = followed_of(space, work.n * work.m)
     if followed == 0:
-        return found, top, tally
+        return rays, progress
     if followed < work.n * work.m:
-        allowed_here = allowed.relative * work.share * max(allowed.scale, tally.size)
-        guess = CRUDE * fraction(work.tile, task.symmetric) * strongest
-        if end or (looked and work.kind == LOOK and guess <= allowed_here):
-            size, off = weigh_crudely(task, work.tile, work.n, work.m, work.kind, room)
-            found, tally = _kept(found, code, work, room, tally, size, 0.0, off)
-            return found, top, tally
-        top, missing, work = _look(
-            task, agenda, top, work, _spare(allowed, tally), allowed.beyond, room
-        )
-        tally = _left_out(tally, missing)
+        allowed = goal.relative * work.allotment * max(goal.scale, progress.size)
+        guess = CRUDE * fraction(work.tile, symmetric) * strongest
+        # the survey's look at the whole aperture comes before any segment
+        crude = progress.segments > 0 and work.kind == LOOK and guess <= allowed
+        if end or crude:
+            size, error = weigh_crudely(point, work.tile, work.n, work.m, work.kind, space)
+            return _kept(rays, goal, work, space, progress, size, 0.0, error)
+        missing, work = _look(point, work, spare(goal, progress), goal.extrapolation, space)
+        progress = left_out(progress, missing)
         if work.n == 0:
-            return found, top, tally
-    map_tile(task, work.tile, work.n, work.m, stride, work.kind, room)
-    part, smaller = holding(
-        room.returns, work.n, work.m, work.tile, task.symmetric, task.detector.radius, room.search
+            return rays, progress
+    map_tile(point, work.tile, work.n, work.m, stride, work.kind, space)
+    cells, smaller = holding(
+        space.returns, work.n, work.m, work.tile, symmetric, point.detector.radius, space.search
     )
-    field = part * strongest * fraction(work.tile, task.symmetric)
-    if field <= 0.25 * _spare(allowed, tally):
-        return found, top, _left_out(tally, field)
+    field = cells * strongest * fraction(work.tile, symmetric)
+    if field <= 0.25 * spare(goal, progress):
+        return rays, left_out(progress, field)
+    n, m = goal.orders
+    rest = OpenTile(smaller, n, m, FIT, work.allotment, field, np.inf)
     if work.kind == LOOK:
-        n, m = allowed.orders
-        return found, push(agenda, top, smaller, n, m, FIT, work.share, field, np.inf), tally
-    return _fit(
-        task, code, agenda, top, work, smaller, field, strongest, allowed, end, room, found, tally
-    )
+        push(space.waiting, rest)
+        return rays, progress
+    return _fit(point, goal, work, rest, strongest, end, space, rays, progress)

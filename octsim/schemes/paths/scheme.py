@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.optics.scene import Scene
-from octsim.schemes.field_sum import field_of_paths
 from octsim.schemes.light import Field, Light, LightAt, Optics, Options
 from octsim.schemes.paths.integrate import integrate
+from octsim.schemes.paths.path_sum import field_of_paths
 
 
 def tracer(optics: Optics, options: Options) -> LightAt:

@@ -1,57 +1,87 @@
 """Tiles that wait to be integrated: the one of the largest field comes next."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba.extending import register_jitable
+from numpy.typing import NDArray
 
 from octsim.schemes.paths.aperture_tiles import Tile, across, halves
-from octsim.schemes.paths.workspace import Agenda, Task
+
+MOST_TILES = 4096
+"""Tiles of one path that can wait."""
+
+
+class OpenTile(NamedTuple):
+    """A tile that is still to be integrated, and how that is to be tried."""
+
+    tile: Tile
+    n: int
+    """Number of nodes along s."""
+    m: int
+    """Number of nodes along v."""
+    kind: int
+    """Of its nodes, `chebyshev.FIT` or `chebyshev.LOOK`."""
+    allotment: float
+    """Part of the path's error that it may have."""
+    bound: float
+    """Estimate of its field."""
+    coarser_error: float
+    """Error estimate with fewer nodes; infinite if there were none."""
+
+
+class WaitingTiles(NamedTuple):
+    """Room for open tiles, in no order."""
+
+    rows: NDArray[np.float64]
+    """The numbers of each, (MOST_TILES, 10)."""
+    size: NDArray[np.int64]
+    """How many wait, (1,)."""
 
 
 @register_jitable
-def push(
-    agenda: Agenda, top: int, tile: Tile, n: int, m: int, kind: int, share: float, bound: float,
-    off: float,
-) -> int:  # fmt: skip
-    """Have a tile wait; give the number of the last one."""
-    agenda.tiles[top + 1] = tile
-    agenda.orders[top + 1, 0], agenda.orders[top + 1, 1] = n, m
-    agenda.kinds[top + 1], agenda.shares[top + 1] = kind, share
-    agenda.bounds[top + 1], agenda.offs[top + 1] = bound, off
-    return top + 1
+def room_for_waiting() -> WaitingTiles:
+    """Make the room that tiles wait in."""
+    return WaitingTiles(np.empty((MOST_TILES, 10)), np.zeros(1, np.int64))
 
 
 @register_jitable
-def push_halves(
-    task: Task, agenda: Agenda, top: int, tile: Tile, n: int, m: int, kind: int, share: float,
-    bound: float,
-) -> int:  # fmt: skip
+def push(waiting: WaitingTiles, one: OpenTile) -> None:
+    """Have a tile wait."""
+    row = waiting.rows[waiting.size[0]]
+    row[0], row[1], row[2], row[3] = one.tile
+    row[4], row[5], row[6] = one.n, one.m, one.kind
+    row[7], row[8], row[9] = one.allotment, one.bound, one.coarser_error
+    waiting.size[0] += 1
+
+
+@register_jitable
+def push_halves(waiting: WaitingTiles, one: OpenTile, symmetric: bool) -> None:
     """Cut a tile in two across its longer side, and have both wait."""
+    tile = one.tile
     tall = math.sqrt(tile.v_max) - math.sqrt(tile.v_min) > (
-        across(tile.s_max, task.symmetric) - across(tile.s_min, task.symmetric)
+        across(tile.s_max, symmetric) - across(tile.s_min, symmetric)
     )
-    one, other = halves(tile, task.symmetric, tall)
-    top = push(agenda, top, one, n, m, kind, 0.7 * share, 0.5 * bound, np.inf)
-    return push(agenda, top, other, n, m, kind, 0.7 * share, 0.5 * bound, np.inf)
+    first, second = halves(tile, symmetric, tall)
+    allotment, bound = 0.7 * one.allotment, 0.5 * one.bound
+    push(waiting, OpenTile(first, one.n, one.m, one.kind, allotment, bound, np.inf))
+    push(waiting, OpenTile(second, one.n, one.m, one.kind, allotment, bound, np.inf))
 
 
 @register_jitable
-def promising(agenda: Agenda, top: int) -> None:
-    """Put the tile of the largest field last among those that wait."""
-    best = top
-    for i in range(top):
-        if agenda.bounds[i] > agenda.bounds[best]:
+def pop_strongest(waiting: WaitingTiles) -> OpenTile:
+    """Take out the tile of the largest estimated field."""
+    last = waiting.size[0] - 1
+    best = last
+    for i in range(last):
+        if waiting.rows[i, 8] > waiting.rows[best, 8]:
             best = i
-    if best != top:
-        for k in range(4):
-            a, b = agenda.tiles[best, k], agenda.tiles[top, k]
-            agenda.tiles[best, k], agenda.tiles[top, k] = b, a
-        for k in range(2):
-            p, q = agenda.orders[best, k], agenda.orders[top, k]
-            agenda.orders[best, k], agenda.orders[top, k] = q, p
-        p, q = agenda.kinds[best], agenda.kinds[top]
-        agenda.kinds[best], agenda.kinds[top] = q, p
-        for values in (agenda.shares, agenda.bounds, agenda.offs):
-            a, b = values[best], values[top]
-            values[best], values[top] = b, a
+    row = waiting.rows[best]
+    strongest = OpenTile(
+        Tile(row[0], row[1], row[2], row[3]), int(row[4]), int(row[5]), int(row[6]), row[7],
+        row[8], row[9],
+    )  # fmt: skip
+    waiting.rows[best] = waiting.rows[last]
+    waiting.size[0] = last
+    return strongest

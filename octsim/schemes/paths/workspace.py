@@ -1,4 +1,4 @@
-"""What the integration of a point works with: its task, room for tiles, and for weighted rays."""
+"""What the integration of a point works with: the point, room for tiles, and for weighted rays."""
 
 from typing import NamedTuple
 
@@ -13,16 +13,15 @@ from octsim.schemes.paths.chebyshev import HIGHEST
 from octsim.schemes.paths.line_crossings import Line, Map, room_for_line
 from octsim.schemes.paths.patch_by_fit import Search, room_for_search
 from octsim.schemes.paths.patch_integrals import Rules
-from octsim.tracing.blocks import LANES
+from octsim.schemes.paths.waiting_tiles import WaitingTiles, room_for_waiting
 from octsim.tracing.faces import Faces
-from octsim.tracing.follow import LONGEST, Bundle, Workspace, room_for_bundle, room_for_following
+from octsim.tracing.follow import Bundle, FollowRoom, room_for_bundle, room_for_following
+from octsim.tracing.lanes import LANES
+from octsim.tracing.light_paths import LONGEST
 
-MOST_TILES = 4096
-"""Tiles of one path that can wait."""
 
-
-class Task(NamedTuple):
-    """What stays the same for all tiles of a point."""
+class Point(NamedTuple):
+    """What is integrated: the same for all paths and tiles."""
 
     faces: Faces
     symmetric: bool
@@ -51,8 +50,8 @@ class Survey(NamedTuple):
     """Where each path's rays begin, (P,)."""
     end: NDArray[np.int64]
     """Where they end, (P,)."""
-    beyond: float
-    """How far quantities may go on beyond known corners; see `patch_by_corners`."""
+    extrapolation: float
+    """How far quantities may go on past known corners; see `patch_by_corners`."""
     bound: NDArray[np.float64]
     """An estimate of each path's field, (P,)."""
     strongest: NDArray[np.float64]
@@ -65,27 +64,12 @@ class Survey(NamedTuple):
     vy: NDArray[np.float64]
 
 
-class Agenda(NamedTuple):
-    """Tiles that wait, the next one last."""
-
-    tiles: NDArray[np.float64]
-    orders: NDArray[np.int64]
-    """Number of nodes along s and v."""
-    kinds: NDArray[np.int64]
-    shares: NDArray[np.float64]
-    """Of the error that is allowed."""
-    bounds: NDArray[np.float64]
-    """Estimated fields."""
-    offs: NDArray[np.float64]
-    """Errors with fewer nodes; infinite if there were none."""
-
-
-class Room(NamedTuple):
+class Workspace(NamedTuple):
     """Room to work on a tile in."""
 
     beam: Beam
     bundle: Bundle
-    rays: Workspace
+    rays: FollowRoom
     line: Line
     search: Search
     returns: Map
@@ -98,38 +82,34 @@ class Room(NamedTuple):
     rough_weight: NDArray[np.float64]
     face: NDArray[np.int64]
     through: NDArray[np.bool_]
-    agenda: Agenda
+    waiting: WaitingTiles
 
 
-class Found(NamedTuple):
-    """Room for weighted rays."""
+class WeightedRays(NamedTuple):
+    """Room for weighted rays: nodes of the integral."""
 
     path: NDArray[np.int64]
     amplitude: NDArray[np.float64]
-    rough: NDArray[np.float64]
+    rough_amplitude: NDArray[np.float64]
     optical_path_length: NDArray[np.float64]
 
 
 @register_jitable
-def room_for_point() -> Room:
+def room_for_point() -> Workspace:
     """Make the room that a point's tiles are worked on in."""
     square = (HIGHEST, HIGHEST)
-    return Room(
+    return Workspace(
         Beam(np.empty(LANES), np.empty(LANES), np.empty(LANES), np.ones(LANES), np.arange(LANES)),
         room_for_bundle(), room_for_following(), room_for_line(), room_for_search(),
         Map(np.empty(square), np.empty(square), np.empty(square), np.empty(square)),
         np.empty(square), np.empty(square), np.empty(square), np.empty(square), np.empty(square),
         np.empty(square), np.empty(square),
         np.empty(LONGEST, np.int64), np.empty(LONGEST, np.bool_),
-        Agenda(
-            np.empty((MOST_TILES, 4)), np.empty((MOST_TILES, 2), np.int64),
-            np.empty(MOST_TILES, np.int64), np.empty(MOST_TILES), np.empty(MOST_TILES),
-            np.empty(MOST_TILES),
-        ),
+        room_for_waiting(),
     )  # fmt: skip
 
 
 @register_jitable
-def room_for_nodes(size: int) -> Found:
+def room_for_nodes(size: int) -> WeightedRays:
     """Make room for weighted rays; it grows as they come."""
-    return Found(np.empty(size, np.int64), np.empty(size), np.empty(size), np.empty(size))
+    return WeightedRays(np.empty(size, np.int64), np.empty(size), np.empty(size), np.empty(size))

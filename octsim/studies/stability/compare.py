@@ -36,7 +36,7 @@ from octsim.studies.stability.verdict import (
     bound,
     judged,
 )
-from octsim.tracing.faces import faces_of
+from octsim.tracing.faces import faces_at
 
 WAVENUMBERS = 100
 """Most wavenumbers of a cell at which the sum is compared."""
@@ -181,7 +181,7 @@ def launch_error(case: Case, rays: list[int]) -> Judgement:
 
 def single(case: Case, pairs: list[Pair]) -> Iterator[tuple[float, float]]:
     """Yield the errors of float32 in phase (rad) and amplitude; infinite where a ray is lost."""
-    faces = faces_of(scene_of(case.config, case.cell.diameter))
+    faces = faces_at(scene_of(case.config, case.cell.diameter), case.k_max)
     detector = detector_of(case.config)
     place = np.empty_like(case.beam.number)
     place[case.beam.number] = np.arange(place.size)

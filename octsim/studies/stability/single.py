@@ -15,7 +15,7 @@ from octsim.optics import interface as optics
 from octsim.optics import intersection
 from octsim.optics.beam import Beam
 from octsim.optics.detector import Detector
-from octsim.tracing.faces import Faces, Kind
+from octsim.tracing.faces import Faces, Kind, is_flat
 
 Real = Any  # np.float32 or np.float64
 Precision = type[np.float32] | type[np.float64]
@@ -53,16 +53,12 @@ def _numbers(row: Any, precision: Precision) -> Any:
 
 
 def _meet(faces: Faces, f: int, at: Any, along: Any) -> tuple[Real, Real]:
-    if faces.kind[f] == Kind.CYLINDER_FROM_OUTSIDE:
-        enter = INTERSECTION["enter_cylinder"]
-        distance, cos_i = enter(faces.x[f], faces.z[f], faces.radius[f], at, along)
-    elif faces.kind[f] == Kind.CYLINDER_FROM_INSIDE:
-        cross = INTERSECTION["cross_cylinder"]
-        distance, cos_i = cross(faces.x[f], faces.z[f], faces.radius[f], at, along)
-    else:
-        above = faces.kind[f] == Kind.PLANE_FROM_ABOVE
-        distance = INTERSECTION["meet_plane"](faces.z[f], above, at, along)
-        cos_i = abs(along.z)
+    kind, shape = faces.kind[f], faces.shape[f]
+    if is_flat(kind):
+        above = kind == Kind.PLANE_FROM_ABOVE
+        return INTERSECTION["meet_plane"](shape[0], above, at, along), abs(along.z)
+    name = "enter_cylinder" if kind == Kind.CYLINDER_FROM_OUTSIDE else "cross_cylinder"
+    distance, cos_i = INTERSECTION[name](*shape, at, along)
     return distance, cos_i
 
 
@@ -106,12 +102,14 @@ def follow_single(
         amplitude = amplitude * factor
         after = faces.after_transmission if digit % 2 else faces.after_reflection
         departure = after[f]
-    to_focus, at_focus = DETECTION["arrival"](precision(focus), at, along)
+    to_focus, at_focus = DETECTION["at_plane"](precision(focus), at, along)
     plane = precision(focus) - detector.focus_distance
-    _, at_objective = DETECTION["arrival"](plane, at, along)
-    if DETECTION["fate"](detector, at_focus, at_objective) != detection.Outcome.DETECTED:
+    _, at_objective = DETECTION["at_plane"](plane, at, along)
+    within = detection.acceptance(detector)
+    if DETECTION["fate"](within, at_focus, at_objective) != detection.Outcome.DETECTED:
         return None
-    weight, rest = DETECTION["collect"](detector, faces.n_objective, to_focus, at_focus)
+    weight = DETECTION["falloff"](at_focus / (detector.radius * detector.radius))
+    rest = DETECTION["to_fibre"](detector, faces.n_objective, to_focus, at_focus)
     return Arrival(amplitude * weight, path + rest)
 
 
@@ -124,14 +122,14 @@ def _split(
     if squared < 0 and transmitted:
         return None
     zero = cos_i * 0
-    flat = faces.kind[f] in (Kind.PLANE_FROM_ABOVE, Kind.PLANE_FROM_BELOW)
+    kind, shape = faces.kind[f], faces.shape[f]
+    flat = is_flat(kind)
     if flat:
-        side = 1 if faces.kind[f] == Kind.PLANE_FROM_ABOVE else -1
-        normal = optics.Vector(zero, zero, zero + side)
+        side = INTERSECTION["plane_normal"](kind == Kind.PLANE_FROM_ABOVE)
+        normal = optics.Vector(*(zero + part for part in side))
     else:
-        side = 1 if faces.kind[f] == Kind.CYLINDER_FROM_OUTSIDE else -1
-        scale = side / faces.radius[f]
-        normal = optics.Vector((at.x - faces.x[f]) * scale, zero, (at.z - faces.z[f]) * scale)
+        curvature = (1 if kind == Kind.CYLINDER_FROM_OUTSIDE else -1) / shape[2]
+        normal = INTERSECTION["cylinder_normal"](shape[0], shape[1], curvature, at)
     cos_t = np.sqrt(np.maximum(squared, zero))
     r, t = OPTICS["fresnel"](n_i, n_t, cos_i, cos_t)
     if transmitted:

@@ -1,0 +1,61 @@
+"""Light paths: which surfaces light meets, in order, and whether it is reflected at each.
+
+A path's code is a number whose digits, in base 2 S for S surfaces, are its meetings: twice the
+surface's number, plus one if the light goes through. A leading 1 keeps the zeros.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numba.extending import register_jitable
+from numpy.typing import NDArray
+
+from octsim.tracing.faces import Faces
+
+LONGEST = 31
+"""Most meetings that a code has room for."""
+
+
+def path_name(code: int, surfaces: Sequence[str]) -> str:
+    """Return the name of a light path: its surfaces in order, R reflected or T transmitted at each.
+
+    Parameters
+    ----------
+    code : int
+        Of the path.
+    surfaces : sequence of str
+        Names of the scene's surfaces, in its order.
+
+    Examples
+    --------
+    >>> path_name(0b1_01_11, ("P", "C"))
+    'PT CT'
+    """
+    meetings = []
+    while code > 1:
+        code, digit = divmod(code, 2 * len(surfaces))
+        meetings.append(surfaces[digit // 2] + "RT"[digit % 2])
+    return " ".join(reversed(meetings))
+
+
+@register_jitable
+def steps_of(faces: Faces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]) -> int:
+    """Read a path's code into the faces that it meets, and how it leaves each; return how many.
+
+    `face` and `through` have room for `LONGEST` meetings.
+    """
+    base, num = faces.kind.size, 0
+    rest = code
+    while rest > 1:
+        rest //= base
+        num += 1
+    departure = 0
+    for m in range(num):
+        digit = (code // base ** (num - 1 - m)) % base
+        for choice in range(faces.first[departure], faces.first[departure + 1]):
+            if faces.surface[faces.next_face[choice]] == digit // 2:
+                face[m] = faces.next_face[choice]
+        through[m] = digit % 2 == 1
+        after = faces.after_transmission if through[m] else faces.after_reflection
+        departure = after[face[m]]
+    return num
