@@ -55,7 +55,8 @@ def ask(task: Mapping[str, Any]) -> int | None:
             connection.connect(os.environ.get(SOCKET, ""))
         except OSError:
             return None
-        text = json.dumps({**task, "folder_of_the_process": str(Path.cwd())}).encode()
+        whole = {**task, "folder_of_the_process": str(Path.cwd())}
+        text = json.dumps(whole, default=str).encode()  # YAML reads a day as one
         socket.send_fds(connection, [f"{len(text):{_HEAD}}".encode()], _STREAMS)
         connection.sendall(text)
         status = connection.recv(1)

@@ -191,7 +191,7 @@ def test_a_file_of_0_1_0_is_made_anew(tmp_path: Path) -> None:
     done = reproduce(OLD / "phase_slope.nc", tmp_path / "again", "--cores", "1")
     assert done.returncode == 0, done.stdout + done.stderr
     assert f"  octsim: 0.1.0 -> {octsim.__version__}\n" in done.stdout
-    assert "  schema: 0 -> 1\n" in done.stdout
+    assert f"  schema: 0 -> {SCHEMA}\n" in done.stdout
     assert "  libraries: not recorded -> python" in done.stdout
 
 
@@ -261,7 +261,7 @@ def test_a_file_that_is_none_of_ours_is_one_line_and_nothing_is_made(
         (tmp_path / "foreign.nc", again, "not a dataset of octsim"),
         (tmp_path / "damaged.nc", again, "damaged.nc: can't be read"),
         (tmp_path / "none.nc", again, "none.nc: not there"),
-        (later, again, "written by octsim 9.1, as schema 2"),
+        (later, again, f"written by octsim 9.1, as schema {SCHEMA + 1}"),
         (stage, again, "of the stage '../../x', which this octsim lacks"),
         (tiny, tmp_path / "full", "full: not an empty folder"),
     ):

@@ -196,14 +196,22 @@ def test_an_edit_reruns_only_what_reads_the_key(key: str, law: Checkout, given: 
     assert given.would_run(merged(TINY, GIVEN, edit)) == with_focus
 
 
-def test_comments_and_formatting_of_the_sources_rerun_nothing(tmp_path: Path) -> None:
+@pytest.mark.trial
+def test_comments_and_formatting_of_the_sources_rerun_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     checkout = Checkout(tmp_path)
+    shutil.copytree(
+        ROOT / "octsim", tmp_path / "octsim", ignore=shutil.ignore_patterns("__pycache__")
+    )
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     checkout.run(TINY, "--until", "focus_law")
-    script = tmp_path / "workflow" / "scripts" / "focus_law.py"
-    script.write_text("# a comment\n" + script.read_text().replace("config, fits", "config,  fits"))
     untouched = {"focus_scan", "detections", "spectra", "phase_slope", "figures"}
+    source = tmp_path / "octsim" / "stages" / "gaussian_fits.py"
+    text = source.read_text()
+    source.write_text("# a comment\n" + text.replace("config, sweep", "config,  sweep"))
     assert checkout.would_run(TINY) == untouched
-    script.write_text(script.read_text() + "\nprint('more')\n")
+    source.write_text(text + "\nMORE = 1\n")
     assert checkout.would_run(TINY) == untouched | {"focus_law"}
 
 
@@ -362,7 +370,7 @@ def test_a_job_of_a_run_that_another_has_followed_does_nothing(tmp_path: Path) -
 
 def test_a_job_has_the_threads_that_its_run_counted(tmp_path: Path) -> None:
     Checkout(tmp_path)
-    script = tmp_path / "workflow" / "scripts" / "detections.py"
+    script = tmp_path / "workflow" / "scripts" / "job.py"
     script.write_text("import pathlib; pathlib.Path('threads').write_text(str(snakemake.threads))")
     (tmp_path / "mine.yaml").write_text(yaml.safe_dump(merged(TINY, GIVEN)))
     as_a_job(tmp_path, "detections.nc")
