@@ -1,8 +1,6 @@
 """The config: what is refused and with which words, what merges, and what agrees with what."""
 
 import json
-import subprocess
-import sys
 import warnings
 from pathlib import Path
 from typing import Any
@@ -213,13 +211,6 @@ def test_what_an_archive_says_is_written_as_the_standards_do(tmp_path: Path) -> 
     assert (said.date, said.license, said.description) == ("2026-01-31", "CC0-1.0", "Two lines.")
     assert said.creators[0].orcid == "0000-0002-1694-233X"
     assert load_config(config.to_dict()) == config
-
-
-def test_a_config_is_loaded_without_what_computes() -> None:
-    code = "import sys, octsim; octsim.load_config(); print(*sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    heavy = {"numpy", "scipy", "numba", "xarray", "netCDF4", "matplotlib", "pandas"}
-    assert not heavy & set(done.stdout.split())
 
 
 def test_a_config_is_frozen() -> None:
