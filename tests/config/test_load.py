@@ -303,3 +303,9 @@ def test_parts_of_a_config_change_with_the_keys_they_hold_alone() -> None:
     assert parts_of(data, "scene.refractive_index", "sweep") == parts_of(
         changed, "scene.refractive_index", "sweep"
     )
+
+
+def test_an_unknown_preset_lists_the_known() -> None:
+    with pytest.raises(ConfigError) as said:
+        load_config({"tracing": {"preset": "standart"}})
+    assert all(name in str(said.value) for name in PRESETS)
