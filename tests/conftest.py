@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 import xarray as xr
 from hypothesis import settings
+from made_runs import WHOLE, every_stage
 
 from octsim.config.load import load_config
 from octsim.studies.calibration.study import calibration
@@ -31,6 +32,12 @@ def planned(tmp_path: Path) -> Callable[..., str]:
         return done.stdout + done.stderr
 
     return planned
+
+
+@pytest.fixture(scope="session")
+def stages() -> dict[str, xr.Dataset]:
+    """Make every dataset of a small run, once: no test changes them in place."""
+    return every_stage(load_config(WHOLE), 2)
 
 
 @pytest.fixture(scope="session")

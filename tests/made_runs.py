@@ -1,6 +1,8 @@
-"""Small runs, made in memory and written to a folder."""
+"""Small runs, made in memory or written to a folder."""
 
 from pathlib import Path
+
+import xarray as xr
 
 import octsim
 from octsim.datasets.files import write
@@ -12,6 +14,14 @@ TINY = {
     "spectrum": {"samples": 64},
     "sweep": {"diameters": {"num": 9}, "focus": {"slope": 0.58, "intercept": "69 nm"}},
 }
+WHOLE = {
+    "run": "whole",
+    "tracing": {"rays": 300},
+    "focus_scan": {"focus": {"num": 21}},
+    "focus_law": {"diameters": {"num": 3}, "fraction": {"num": 11}},
+    "sweep": {"diameters": {"num": 9}},
+}
+"""The config of the fixture `stages`."""
 
 
 def make(folder: Path, *overlays: dict[str, object], scan: bool = True) -> octsim.Config:
@@ -23,3 +33,17 @@ def make(folder: Path, *overlays: dict[str, object], scan: bool = True) -> octsi
     write(spectra, folder / "spectra.nc")
     write(octsim.phase_slope(config, octsim.fourier(config, spectra)), folder / "phase_slope.nc")
     return config
+
+
+def every_stage(config: octsim.Config, threads: int = 1) -> dict[str, xr.Dataset]:
+    """Return every dataset of a run, by name."""
+    made = {"focus_scan": octsim.focus_scan(config, threads)}
+    made["focus_sweep"] = octsim.focus_sweep(config, threads)
+    made["gaussian_fits"] = octsim.gaussian_fits(config, made["focus_sweep"])
+    made["focus_law"] = octsim.focus_law(config, made["gaussian_fits"])
+    made["detections"] = octsim.detections(config, made["focus_law"], threads)
+    made["spectra"] = octsim.spectra(config, made["detections"], threads)
+    made["paths"] = octsim.light_paths(config, made["detections"])
+    made["fourier"] = octsim.fourier(config, made["spectra"])
+    made["phase_slope"] = octsim.phase_slope(config, made["fourier"])
+    return made

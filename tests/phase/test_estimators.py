@@ -19,7 +19,7 @@ from octsim.phase.estimators.fft import peak_depths
 from octsim.phase.estimators.likelihood import Model, maximum_likelihood
 from octsim.phase.estimators.series import series_phases
 from octsim.phase.slopes import slope_of
-from octsim.phase.transform import centred, prepared, window_samples
+from octsim.phase.transform import centred, fourier_components, prepared, window_samples
 
 Array = NDArray[np.float64]
 K = Config().spectrum.wavenumbers()
@@ -299,3 +299,12 @@ def test_the_ideal_slope_is_near_the_prediction(estimator: str) -> None:
     phase = ideal_phases(config, ideal_spectra(n_neuron, diameter, k), diameter, k)
     off_it = slope_of(diameter, phase) - predicted_phase_slope(n_neuron, k[0], k[-1])
     assert np.abs(off_it).max() < 2  # the image's oscillation, where it is not kept apart
+
+
+def test_the_held_component_is_the_strongest_of_all_spectra_together() -> None:
+    spectra = ideal_spectra(1.39, np.array([1.1, 1.9, 1.9]), K)
+    components = fourier_components(spectra, Config().processing)
+    strongest = np.abs(components[:, 1:]).argmax(axis=1) + 1
+    assert strongest[0] != strongest[1] == strongest[2]
+    found = series_phases(spectra, K, 1.9 * 1.39, Config().processing)
+    assert found == pytest.approx(np.angle(components[:, strongest[1]]))

@@ -1,6 +1,5 @@
 """The dataset of the spike and of the scatter: its numbers are the run's, and it is drawn."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -75,8 +74,3 @@ def test_the_dataset_explains_itself_and_is_drawn(found: xr.Dataset, tmp_path: P
         with look():
             save(draw(stored), tmp_path / f"{name}.png")
         assert (tmp_path / f"{name}.png").stat().st_size > 10_000
-
-
-def test_the_target_has_its_name_and_is_no_part_of_a_run(planned: Callable[..., str]) -> None:
-    assert "what makes the phase slope scatter" in planned("causes")
-    assert "what makes the phase slope scatter" not in planned()

@@ -1,7 +1,6 @@
 """The trade of cost for accuracy: errors fall with it, the frontier is one, presets are points."""
 
 import math
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +8,6 @@ import pytest
 import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.base.errors import ConfigError
 from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.datasets.files import read, write
@@ -111,12 +109,6 @@ def test_a_preset_is_a_setting_of_the_trade(name: str) -> None:
     assert is_the_runs(setting, asked)
 
 
-def test_an_unknown_preset_lists_the_known() -> None:
-    with pytest.raises(ConfigError) as said:
-        load_config({"tracing": {"preset": "standart"}})
-    assert all(name in str(said.value) for name in PRESETS)
-
-
 def test_the_runs_own_setting_is_marked_once(measured: xr.Dataset) -> None:
     assert measured["default"].values.sum() == 1
     own = measured.isel(setting=int(measured["default"].values.argmax()))
@@ -155,8 +147,3 @@ def test_the_dataset_explains_itself_and_is_drawn(measured: xr.Dataset, tmp_path
     assert "standard" in summary(stored)
     with look():
         save(tradeoff_figure(stored), tmp_path / "tradeoff.png")
-
-
-def test_the_target_has_its_name_and_is_no_part_of_a_run(planned: Callable[..., str]) -> None:
-    assert "Measure error and cost" in planned("tradeoff")
-    assert "Measure error and cost" not in planned()
