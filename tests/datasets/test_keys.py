@@ -1,10 +1,16 @@
-"""Which keys of a config a dataset depends on."""
+"""Which keys of a config a dataset depends on, and so what an edit makes anew."""
 
 import pytest
-from gridded import GIVEN, gridded
+from checkout import GIVEN, TINY, merged
+from edits import EDITS, EVERYTHING, edit_of
+from gridded import gridded
 
-from octsim.datasets.catalog import STAGES
-from octsim.datasets.keys import stage_axes
+from octsim.config.derive import parts_of
+from octsim.config.load import load_config
+from octsim.config.models import Config
+from octsim.datasets.catalog import STAGES, Stage, jobs
+from octsim.datasets.gallery import figures_of
+from octsim.datasets.keys import inputs_of, keys_read, stage_axes
 
 
 @pytest.mark.parametrize(
@@ -28,3 +34,31 @@ def test_a_stage_has_the_axes_of_the_keys_it_depends_on(key: str, stages: set[st
     }  # fmt: skip
     config = gridded({key: values[key]}, GIVEN)
     assert {stage for stage in STAGES if stage_axes(stage, config)} == stages
+
+
+def made_anew(before: Config, after: Config) -> set[str]:
+    """Return the jobs of a run that an edit makes anew, where all was made before it."""
+
+    def read(row: Stage, config: Config) -> dict[str, object]:
+        return dict(parts_of(config.to_dict(), *keys_read(row.name, config)))
+
+    names, anew = set[str](), set[str]()
+    for job, rows in jobs(beside=False).items():
+        sources = {name for row in rows for name in inputs_of(row, after)}
+        if sources & names or any(read(row, before) != read(row, after) for row in rows):
+            anew.add(job)
+            names |= {row.name for row in rows}
+    drawn = {name for sources in figures_of(after).values() for name in sources}
+    return anew | ({"figures"} if drawn & names else set())
+
+
+@pytest.mark.parametrize("key", EDITS)
+def test_an_edit_makes_anew_only_what_follows_from_the_key(key: str) -> None:
+    _, with_law, with_focus = EDITS[key]
+    if key == "run":  # another run, of which nothing is there, and no part of what a stage reads
+        with_law = with_focus = set()
+    for given, expected in (({}, with_law), (GIVEN, with_focus)):
+        plain = merged(TINY, given)
+        edited = merged(plain, edit_of(key))
+        assert made_anew(load_config(plain), load_config(edited)) == expected
+    assert expected <= EVERYTHING

@@ -14,6 +14,7 @@ import pytest
 import xarray as xr
 import yaml
 from checkout import GIVEN, GRID, ROOT, TINY, Checkout, counts, merged
+from edits import EDITS, EVERYTHING, edit_of
 
 from octsim.config.messages import known_keys
 from octsim.config.models import Config
@@ -64,57 +65,6 @@ def test_the_same_config_in_other_units_and_order_reruns_nothing(law: Checkout) 
     assert law.would_run(dict(reversed(other.items()))) == set()
 
 
-EVERYTHING = {
-    "focus_scan", "focus_sweep", "focus_law", "detections", "spectra", "phase_slope", "figures",
-}  # fmt: skip
-FITTED = EVERYTHING - {"focus_scan"}
-SWEPT = {"detections", "spectra", "phase_slope", "figures"}
-PROCESSED = {"phase_slope", "figures"}
-# key: (edited value, what reruns under the fitted law, what reruns with a given focus)
-EDITS: dict[str, tuple[Any, set[str], set[str]]] = {
-    "run": ("other", EVERYTHING, EVERYTHING),
-    "scene.refractive_index.glass": (1.53, EVERYTHING, EVERYTHING),
-    "scene.refractive_index.water": (1.34, EVERYTHING, EVERYTHING),
-    "scene.refractive_index.neuron": (1.38, EVERYTHING, EVERYTHING),
-    "scene.gap": ("6 nm", EVERYTHING, EVERYTHING),
-    "objective.numerical_aperture": (1.1, EVERYTHING, EVERYTHING),
-    "objective.focus_distance": ("310 um", EVERYTHING, EVERYTHING),
-    "objective.magnification": (21, EVERYTHING, EVERYTHING),
-    "detector.core_diameter": ("4 um", EVERYTHING, EVERYTHING),
-    "tracing.scheme": ("paths", EVERYTHING, EVERYTHING),
-    "tracing.accuracy": (1e-3, set(), set()),  # of the scheme paths
-    "tracing.rays": (201, EVERYTHING, EVERYTHING),
-    "tracing.max_intersections": (10, EVERYTHING, EVERYTHING),
-    "tracing.min_amplitude": (1e-4, EVERYTHING, EVERYTHING),
-    "spectrum.wavelength.min": ("660 nm", EVERYTHING, EVERYTHING - {"detections"}),
-    "spectrum.wavelength.max": ("890 nm", EVERYTHING, EVERYTHING - {"detections"}),
-    "spectrum.samples": (999, EVERYTHING, EVERYTHING - {"detections"}),
-    "focus_scan.diameter": ("2.1 um", {"focus_scan", "figures"}, {"focus_scan", "figures"}),
-    "focus_scan.focus": ({"num": 6}, {"focus_scan", "figures"}, {"focus_scan", "figures"}),
-    "focus_law.diameters": ({"num": 4}, FITTED, {"focus_sweep", "focus_law", "figures"}),
-    "focus_law.fraction": ({"num": 10}, FITTED, {"focus_sweep", "focus_law", "figures"}),
-    "sweep.diameters": ({"num": 10}, SWEPT, SWEPT),
-    "sweep.focus": ({"slope": 0.5, "intercept": "0.1 um"}, SWEPT, SWEPT),
-    "grid.combine": ("zip", set(), set()),
-    "cache.file": ("other", set(), set()),
-    "cache.gigabytes": (1, set(), set()),
-    "budget.cpu_hours": (2, set(), set()),
-    "budget.disk_gigabytes": (21, set(), set()),
-    "scatter.minutes": (1e-5, set(), set()),
-    "processing.estimator": ("sinusoid", PROCESSED, PROCESSED),
-    "processing.centre": ("mean", PROCESSED, PROCESSED),
-    "processing.centre_degree": (2, PROCESSED, PROCESSED),
-    "processing.window": (["kaiser", 4.0], PROCESSED, PROCESSED),
-    "processing.depth": ("peak", PROCESSED, PROCESSED),
-    "processing.read_noise": (2.0, PROCESSED, PROCESSED),
-    "processing.sinusoid.offset_degree": (2, PROCESSED, PROCESSED),
-    "processing.sinusoid.amplitude_degree": (2, PROCESSED, PROCESSED),
-    "processing.sinusoid.depth": ("fitted", PROCESSED, PROCESSED),
-    "processing.sinusoid.weights": ("shot", PROCESSED, PROCESSED),
-    "processing.sinusoid.envelope": ("common", PROCESSED, PROCESSED),
-    "processing.hilbert.band": (0.4, PROCESSED, PROCESSED),
-    "processing.esprit.poles": (5, PROCESSED, PROCESSED),
-}
 # of targets that are no part of a run
 OTHERS: dict[str, Any] = {
     "calibration": {
@@ -173,27 +123,17 @@ def test_keys_of_other_targets_rerun_nothing_of_a_run(law: Checkout, given: Chec
     assert given.would_run(merged(TINY, GIVEN, OTHERS)) == set()
 
 
-def _first_of_each_kind() -> list[Any]:
-    """Give every key; those that rerun what another does are trials."""
-    seen: list[tuple[set[str], set[str]]] = []
-    found = []
-    for key, (_, *reruns) in EDITS.items():
-        kind = (reruns[0], reruns[1])
-        found.append(pytest.param(key, marks=[pytest.mark.trial] if kind in seen else []))
-        seen.append(kind)
-    return found
+# one of each kind of answer; test_keys.py of the datasets has every key, without snakemake
+ASKED = ("scene.gap", "spectrum.samples", "focus_law.fraction", "processing.window")
 
 
-@pytest.mark.parametrize("key", _first_of_each_kind())
+@pytest.mark.parametrize(
+    "key", [pytest.param(key, marks=[] if key in ASKED else [pytest.mark.trial]) for key in EDITS]
+)
 def test_an_edit_reruns_only_what_reads_the_key(key: str, law: Checkout, given: Checkout) -> None:
-    value, with_law, with_focus = EDITS[key]
-    edit: Any = value
-    for name in reversed(key.split(".")):
-        edit = {name: edit}
-    if value is None:
-        edit = {}
-    assert law.would_run(merged(TINY, edit)) == with_law
-    assert given.would_run(merged(TINY, GIVEN, edit)) == with_focus
+    _, with_law, with_focus = EDITS[key]
+    assert law.would_run(merged(TINY, edit_of(key))) == with_law
+    assert given.would_run(merged(TINY, GIVEN, edit_of(key))) == with_focus
 
 
 @pytest.mark.trial
