@@ -25,9 +25,10 @@ print(json.dumps(found))
 """
 
 
-@pytest.fixture
-def changed(tmp_path: Path) -> Callable[..., set[str]]:
+@pytest.fixture(scope="module")
+def changed(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., set[str]]:
     """Return what an edit of a file of the package changes: machine code, and stages by scheme."""
+    tmp_path = tmp_path_factory.mktemp("code")
     skipped = shutil.ignore_patterns("__pycache__")
     shutil.copytree(ROOT / "octsim", tmp_path / "octsim", ignore=skipped)
 
@@ -38,8 +39,10 @@ def changed(tmp_path: Path) -> Callable[..., set[str]]:
         found: dict[str, str] = json.loads(done.stdout)
         return found
 
+    before = digests()
+
     def changed(name: str) -> set[str]:
-        before, file = digests(), tmp_path / "octsim" / name
+        file = tmp_path / "octsim" / name
         text = file.read_text(encoding="utf-8")
         file.write_text(f"{text}\nEDITED = 1\n", encoding="utf-8")
         after = digests()
