@@ -11,7 +11,7 @@ from octsim.base.errors import FileError
 
 
 def reason(error: Exception) -> str:
-    """Give what an error says, in one line."""
+    """Return what an error says, in one line."""
     said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return " ".join(said.split()) or type(error).__name__
 
@@ -58,7 +58,7 @@ def require_empty(folder: Path) -> None:
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """Give a temporary name beside `path`, that is renamed to it once the file is complete.
+    """Return a temporary name beside `path`, that is renamed to it once the file is complete.
 
     Raises
     ------

@@ -24,7 +24,7 @@ def lock_file() -> Path | None:
 
 @cache
 def environment() -> Mapping[str, str]:
-    """Give the version of Python and of each library that the last bits of a result may hang on.
+    """Return the version of Python and of each library that the last bits of a result may hang on.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def _files(source: str | Path) -> list[Path]:
 
 
 def _is_of(path: Path, name: str) -> bool:
-    """Tell whether a file is a module, or part of a package, of this name."""
+    """Return whether a file is a module, or part of a package, of this name."""
     place = PACKAGE.parent.joinpath(*name.split("."))
     return path == place.with_suffix(".py") or place in path.parents
 
@@ -141,7 +141,7 @@ def _imported(node: ast.AST, path: Path) -> Iterator[str]:
 
 
 def _is_for_types(node: ast.stmt) -> bool:
-    """Tell whether a statement is what only a type checker reads."""
+    """Return whether a statement is what only a type checker reads."""
     return isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING")
 
 

@@ -14,7 +14,7 @@ _ORCID = re.compile(r"(?:https://orcid\.org/)?(\d{4}-\d{4}-\d{4}-\d{3}[\dX])")
 
 
 def _orcid(text: str) -> str:
-    """Give the bare ORCID iD; its last digit is a checksum of the others (ISO 7064, MOD 11-2)."""
+    """Return the bare ORCID iD; its last digit is a checksum of the others (ISO 7064, MOD 11-2)."""
     found = _ORCID.fullmatch(text)
     if not found:
         raise ValueError("it should be an ORCID iD as 0000-0002-1825-0097")
@@ -37,7 +37,7 @@ def _day(value: object) -> object:
 
 
 def _license(text: str) -> str:
-    """Give an SPDX id as the SPDX list spells it."""
+    """Return an SPDX id as the SPDX list spells it."""
     if text == LICENSE:
         return text  # a config at its default waits for no list
     from packaging.licenses import InvalidLicenseExpression, canonicalize_license_expression

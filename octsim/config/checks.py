@@ -32,7 +32,7 @@ def _ranges(model: BaseModel, prefix: str = "") -> Iterator[tuple[str, Range]]:
 
 
 def highest_focus(config: Config) -> tuple[str, float]:
-    """Give the key that asks for the highest focus known before a run, and that focus in µm."""
+    """Return the key that asks for the highest focus known before a run, and that focus in µm."""
     law = config.focus_law
     # corners suffice: a product of two ranges is greatest at one
     corners = itertools.product(
@@ -50,7 +50,7 @@ def highest_focus(config: Config) -> tuple[str, float]:
 
 
 def impossible(config: Config) -> Iterator[str]:
-    """Say what is impossible though each key alone is fine, a line each."""
+    """Return what is impossible though each key alone is fine, a line each."""
     aperture, glass = config.objective.numerical_aperture, config.scene.refractive_index.glass
     if not aperture < glass:
         yield (
@@ -149,7 +149,7 @@ def rounding_remarks(config: Config) -> list[str]:
 
 
 def plain_remarks(config: Config) -> list[str]:
-    """Say what is possible but likely not meant, a line each, of a config without a grid."""
+    """Return what is possible but likely not meant, a line each, of a config without a grid."""
     said = list(_steep_remarks(config))
     band, diameters = config.spectrum.wavelength, config.sweep.diameters
     n_neuron = config.scene.refractive_index.neuron

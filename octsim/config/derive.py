@@ -36,12 +36,12 @@ def parts_of(data: Mapping[str, Any], *keys: str) -> dict[str, object]:
 
 
 def overlap(one: str, other: str) -> bool:
-    """Tell whether one of two dotted keys is the other, or holds it."""
+    """Return whether one of two dotted keys is the other, or holds it."""
     return f"{one}.".startswith(f"{other}.") or f"{other}.".startswith(f"{one}.")
 
 
 def bears_on(key: str, *read: str) -> bool:
-    """Tell whether a varied key sets any of some others, or parts of them."""
+    """Return whether a varied key sets any of some others, or parts of them."""
     # a preset stands for other keys
     sets = (key, *_SET_BY_PRESETS) if key == _PRESET else (key,)
     return any(overlap(one, other) for one in sets for other in read)

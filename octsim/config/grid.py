@@ -54,7 +54,7 @@ def as_text(value: Any) -> str:
 
 
 def value_at(config: Config, key: str) -> Any:
-    """Give what a dotted key of a config is, in its own units; None if it has no such part."""
+    """Return what a dotted key of a config is, in its own units; None if it has no such part."""
     value: Any = config
     for name in key.split("."):
         value = getattr(value, name, None)
@@ -62,7 +62,7 @@ def value_at(config: Config, key: str) -> Any:
 
 
 def axes(config: Config, *keys: str) -> tuple[Axis, ...]:
-    """Give the axes of a config's grid.
+    """Return the axes of a config's grid.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def axes(config: Config, *keys: str) -> tuple[Axis, ...]:
 
 
 def combinations(config: Config, *keys: str) -> Iterator[Combination]:
-    """Give every combination of the grid, as far as it varies some keys: the last axis fastest."""
+    """Return each combination of the grid, as far as it varies some keys; the last axis fastest."""
     along = axes(config, *keys)
     base = {**config.to_dict(), "grid": {}}
     for position in itertools.product(*(range(len(axis.rows)) for axis in along)):
@@ -101,7 +101,7 @@ def combinations(config: Config, *keys: str) -> Iterator[Combination]:
 
 
 def remarks(config: Config) -> list[str]:
-    """Say what is possible but likely not meant, a line each, of all combinations together."""
+    """Return what is possible but likely not meant, a line each, of all combinations together."""
     if not config.grid.varied:
         return plain_remarks(config)
     said: dict[str, list[str]] = {}
@@ -114,7 +114,7 @@ def remarks(config: Config) -> list[str]:
 
 
 def without_grid(config: Config, target: str) -> Config:
-    """Give a config that varies nothing.
+    """Return a config that varies nothing.
 
     Raises
     ------

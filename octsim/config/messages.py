@@ -13,7 +13,7 @@ from octsim.config.models import Config, FocusLine
 
 
 def known_keys(model: type[BaseModel] | BaseModel = Config, prefix: str = "") -> Iterator[str]:
-    """Give the dotted path of every key of the config, sections before what they hold."""
+    """Return the dotted path of every key of the config, sections before what they hold."""
     model = model() if isinstance(model, type) else model
     for name in type(model).model_fields:
         yield prefix + name
@@ -26,7 +26,7 @@ def known_keys(model: type[BaseModel] | BaseModel = Config, prefix: str = "") ->
 
 
 def nearest_key(key: str) -> str:
-    """Give the known key that is most like `key`: in its own section, else by its last part."""
+    """Return the known key that is most like `key`: in its own section, else by its last part."""
     section, _, name = key.rpartition(".")
     keys = list(known_keys())
     siblings = {k.rpartition(".")[2]: k for k in keys if k.rpartition(".")[0] == section}
@@ -43,7 +43,7 @@ _OF_TWO_KINDS = (["sweep", "focus"], ["processing", "window"], ["processing", "d
 
 
 def explain(error: ErrorDetails) -> str:
-    """Say in one line which key is wrong, what was given, and what to do."""
+    """Return in one line which key is wrong, what was given, and what to do."""
     place = [str(part) for part in error["loc"]]
     if place[:2] in _OF_TWO_KINDS:
         del place[2:3]  # which of the two it was read as
@@ -86,7 +86,7 @@ def explain(error: ErrorDetails) -> str:
 
 
 def unit_of(key: str) -> str:
-    """Give the unit of a key of the config: um where it is a length, else 1."""
+    """Return the unit of a key of the config: um where it is a length, else 1."""
     value: Any = Config().to_dict()
     for part in key.split("."):
         value = value.get(part) if isinstance(value, dict) else None

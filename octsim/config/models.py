@@ -93,7 +93,7 @@ class Tracing(Section):
         11, "meetings with the plane and the cylinder on one ray"
     )
     min_amplitude: Annotated[Number, Field(ge=0, lt=1)] = _key(
-        0.0, "a fainter ray is dropped; relative to the launch amplitude; of the scheme vogel"
+        0.0, "a fainter counted ray is dropped; relative to the launch amplitude"
     )
 
 
@@ -150,7 +150,7 @@ class FocusLine(Section):
 
     @classmethod
     def fitted(cls, law: Any) -> "FocusLine":
-        """Give the line of a fitted law: a `focus_law` dataset."""
+        """Return the line of a fitted law: a `focus_law` dataset."""
         return cls.model_construct(slope=float(law["slope"]), intercept=float(law["intercept"]))
 
     def at(self, diameter: _Lengths) -> _Lengths:
@@ -264,9 +264,9 @@ class Config(Section):
     scatter: Scatter = Scatter()
 
     def to_dict(self) -> dict[str, Any]:
-        """Give the config as plain data that `load_config` reads back to the same bits."""
+        """Return the config as plain data that `load_config` reads back to the same bits."""
         return self.model_dump(mode="json")
 
     def to_record(self) -> dict[str, Any]:
-        """Give what results can depend on, as plain data: what their datasets record."""
+        """Return what results can depend on, as plain data: what their datasets record."""
         return {k: part for k, part in self.to_dict().items() if k not in _NO_RESULT}

@@ -39,7 +39,7 @@ def dimension_name(key: str) -> str:
 def axis_coordinates(
     axes: tuple[Axis, ...], along: tuple[Combination, ...]
 ) -> dict[str, xr.Variable]:
-    """Give the values of each varied key along its axis: numbers where they are, else text."""
+    """Return the values of each varied key along its axis: numbers where they are, else text."""
     found: dict[str, xr.Variable] = {}
     for place, axis in enumerate(axes):
         # one combination for each row of this axis

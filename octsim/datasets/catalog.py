@@ -9,9 +9,10 @@ A dataset is a row: what it follows from, what makes it, what is drawn from it. 
 digests, the axes of a grid, the archive and the command line all read this table.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from octsim.config.models import Config
 from octsim.schemes.table import COUNTED_RAYS
 
 LIGHT = "(light)"
@@ -53,8 +54,13 @@ class Stage:
     """Datasets that it is made from."""
     job: str = ""
     """The job that makes it, with others of the same name; its own, unless it says so."""
-    traces: bool = False
-    """Whether it traces points of a sweep, so that it may take long and is scattered then."""
+    points: Callable[[Config], tuple[int, int]] | None = None
+    """Of a stage that traces, and so may take long and is scattered then: returns how many rows its
+    blocks are cut from, and how many points each has."""
+    sums: bool = True
+    """Whether a stage that traces sums its light to intensities, or keeps it."""
+    per_sample: tuple[float, float] = (0.0, 0.0)
+    """Of one that works on the sweep's spectra: processor time (s) and bytes of each sample."""
     beside: bool = False
     """Whether it is beside a run, of a single config, and made when it is asked for."""
     summary: str = ""
@@ -67,6 +73,11 @@ class Stage:
     def rule(self) -> str:
         """Name of the job that makes it."""
         return self.job or self.name
+
+    @property
+    def traces(self) -> bool:
+        """Whether it traces points of a sweep."""
+        return self.points is not None
 
     @property
     def module(self) -> str:
@@ -86,7 +97,8 @@ _RUN = (
     Stage(
         "focus_scan", "octsim.stages.focus_scan:focus_scan",
         "Scan the focus for one diameter",
-        reads=(LIGHT, *_COUNTED, "spectrum", "focus_scan"), traces=True,
+        reads=(LIGHT, *_COUNTED, "spectrum", "focus_scan"),
+        points=lambda config: (config.focus_scan.focus.num, 1),
         figures=(
             Figure("figure_6", "octsim.figures.focus_scan:figure_6",
                    "detected rays and intensity over the focus"),
@@ -95,7 +107,9 @@ _RUN = (
     Stage(
         "focus_sweep", "octsim.stages.focus_sweep:focus_sweep",
         "Measure the intensity over the focus for the diameters of the focus law",
-        reads=(LIGHT, "spectrum", "focus_law"), traces=True,
+        reads=(LIGHT, "spectrum", "focus_law"),
+        # a diameter's foci are one row of the dataset
+        points=lambda config: (config.focus_law.diameters.num, config.focus_law.fraction.num),
     ),
     Stage(
         "gaussian_fits", "octsim.stages.gaussian_fits:gaussian_fits",
@@ -115,13 +129,14 @@ _RUN = (
     Stage(
         "detections", "octsim.stages.detections:detections",
         "Trace the sweep over diameters",
-        reads=(LIGHT, "sweep"), after=("focus_law",), traces=True,
+        reads=(LIGHT, "sweep"), after=("focus_law",),
+        points=lambda config: (config.sweep.diameters.num, 1), sums=False,
     ),
     Stage(
         "spectra", "octsim.stages.spectra:spectra",
         "Sum the detected rays to spectra",
         reads=("spectrum", SUMMING), after=("detections",), job="spectra",
-        doubts="octsim.stages.spectra:doubts",
+        doubts="octsim.stages.spectra:doubts", per_sample=(2e-7, 8.0),
         figures=(
             Figure("figure_8", "octsim.figures.spectra:figure_8",
                    "a spectrum on its way to its Fourier transform"),
@@ -156,6 +171,7 @@ _RUN = (
         "Differentiate their phase over the diameter",
         reads=("processing", "scene.refractive_index.neuron"), after=("fourier",),
         job="phase_slope", summary="octsim.stages.phase_slope:summary",
+        per_sample=(1e-7, 12.0),  # magnitude, phase and slopes of half as many components
         figures=(
             Figure("figure_12", "octsim.figures.phase_slope:figure_12",
                    "phase slope over the diameter"),

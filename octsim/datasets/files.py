@@ -55,7 +55,7 @@ def make(
 
 
 def attributes(stage: str, config: Config, title: str) -> dict[str, Any]:
-    """Give what a stage's dataset says of itself: what it is, and all it takes to make it again."""
+    """Return what a dataset says of itself: what it is, and all it takes to make it again."""
     return {
         "Conventions": "CF-1.11",
         "title": title,
@@ -177,7 +177,7 @@ def _checked(
 def flags(
     codes: type[IntEnum], values: NDArray[np.int64]
 ) -> tuple[NDArray[np.int8], dict[str, Any]]:
-    """Give the values of an enumeration with the CF attributes that name them."""
+    """Return the values of an enumeration with the CF attributes that name them."""
     members = list(codes)
     return np.asarray(values, np.int8), {
         "flag_values": np.array([m.value for m in members], np.int8),

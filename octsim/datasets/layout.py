@@ -32,11 +32,11 @@ class Layout:
     title : str
         One line on what is held.
     own : callable
-        Gives the coordinates of a combination's config, by name.
+        Returns the coordinates of a combination's config, by name.
     swept : str, optional
         Dimension along which a part may hold some of a combination's points only.
     bare : callable, optional
-        Gives the lengths of a config's dimensions that have no coordinate.
+        Returns the lengths of a config's dimensions that have no coordinate.
     """
 
     def __init__(
@@ -74,7 +74,7 @@ class Layout:
         return tuple(map(axis_name, self.axes))
 
     def count(self, at: Combination) -> int:
-        """Give how many points a combination has along the swept dimension."""
+        """Return how many points a combination has along the swept dimension."""
         assert self.swept is not None
         return int(self.own[at.position][self.swept][1].size)
 
@@ -84,14 +84,14 @@ class Layout:
         return sum(map(self.count, self.combinations)) if self.swept else len(self.combinations)
 
     def blocks(self, most: Callable[[Config], int]) -> Iterator[tuple[Combination, slice]]:
-        """Give every combination's points in order, not more at once than its config allows."""
+        """Return every combination's points in order, not more at once than its config allows."""
         for at in self.combinations:
             count, together = self.count(at), most(at.config)
             for first in range(0, count, together):
                 yield at, slice(first, min(first + together, count))
 
     def dimension(self, name: str) -> str:
-        """Give the name that a stage's dimension has in the whole dataset."""
+        """Return the name that a stage's dimension has in the whole dataset."""
         return name + OF_ITS_OWN if name in self._differing else name
 
     @cached_property
@@ -160,5 +160,5 @@ def _digest(values: NDArray[Any]) -> bytes:
 
 
 def filling(dtype: np.dtype[Any]) -> Any:
-    """Give what stands where a combination has nothing: NaN, −1 or an empty text."""
+    """Return what stands where a combination has nothing: NaN, −1 or an empty text."""
     return {"f": np.nan, "i": -1, "u": 0, "b": False}.get(dtype.kind, "")

@@ -117,7 +117,7 @@ class Stored:
 
 
 def _there(values: NDArray[Any]) -> NDArray[np.bool_]:
-    """Tell which of a coordinate's values are this combination's own."""
+    """Return which of a coordinate's values are this combination's own."""
     nothing = filling(values.dtype)
     found: NDArray[np.bool_] = ~np.isnan(values) if nothing != nothing else values != nothing
     return found

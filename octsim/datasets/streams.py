@@ -83,7 +83,7 @@ def pour(stream: Stream, sink: Sink) -> None:
 
 
 def arrays(variables: Mapping[str, Any]) -> Iterator[tuple[str, tuple[Any, ...]]]:
-    """Give a part's variables, each as its dimensions, its array and maybe its attributes."""
+    """Return a part's variables, each as its dimensions, its array and maybe its attributes."""
     for name, given in variables.items():
         own, values, *rest = given if isinstance(given, tuple) else ((), given)
         yield name, ((own,) if isinstance(own, str) else own, np.asarray(values), *rest)
@@ -141,5 +141,5 @@ class Streamed(Generic[Parameters]):
         update_wrapper(self, stream)
 
     def __call__(self, *arguments: Parameters.args, **keywords: Parameters.kwargs) -> xr.Dataset:
-        """Give the stage's dataset, in memory."""
+        """Return the stage's dataset, in memory."""
         return gathered(self.stream(*arguments, **keywords))

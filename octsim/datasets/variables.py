@@ -245,7 +245,7 @@ _STANDARD_ERROR = "_standard_error"
 
 
 def meaning(name: str) -> dict[str, str]:
-    """Give a variable's attributes."""
+    """Return a variable's attributes."""
     if name.endswith(_STANDARD_ERROR):
         units, long_name = MEANINGS[name.removesuffix(_STANDARD_ERROR)]
         return {"units": units, "long_name": f"standard error of the {long_name}"}

@@ -30,7 +30,7 @@ _RENAMED: Mapping[str, Mapping[str, str]] = {
 
 
 def recorded_config(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """Give the config that a dataset's attributes hold, as plain data, with every key of today.
+    """Return the config that a dataset's attributes hold, as plain data, with every key of today.
 
     Keys that the config had no name for yet are at their defaults, which do what was done then.
 
@@ -49,7 +49,7 @@ def recorded_config(attributes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def recorded_environment(attributes: Mapping[str, Any]) -> dict[str, str] | None:
-    """Give the versions that a dataset's attributes say it was computed with; None without any."""
+    """Return the versions that a dataset says it was computed with; None without any."""
     try:
         found = json.loads(attributes["environment"])
     except (KeyError, TypeError, ValueError, RecursionError):
@@ -60,12 +60,12 @@ def recorded_environment(attributes: Mapping[str, Any]) -> dict[str, str] | None
 
 
 def printable(text: object) -> str:
-    """Give what a file says as a part of a line, whatever it holds."""
+    """Return what a file says as a part of a line, whatever it holds."""
     return "".join(letter if letter.isprintable() else " " for letter in str(text))[:200]
 
 
 def upgraded(dataset: xr.Dataset, path: Path) -> xr.Dataset:
-    """Give an octsim dataset as this octsim writes it.
+    """Return an octsim dataset as this octsim writes it.
 
     Parameters
     ----------

@@ -79,7 +79,7 @@ class _File:
 
 
 def _is_beside(name: str, coordinate: xr.Variable, dimensions: tuple[str, ...]) -> bool:
-    """Tell whether a coordinate is an auxiliary one of a variable with some dimensions."""
+    """Return whether a coordinate is an auxiliary one of a variable with some dimensions."""
     return coordinate.dims != (name,) and set(map(str, coordinate.dims)) <= set(dimensions)
 
 

@@ -8,13 +8,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from octsim.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILION, label, title
+from octsim.schemes.table import COUNTED_RAYS, LIGHT_PATHS
 
 _FACTORS: Mapping[str, tuple[str, str, str]] = {
     # key of the config: colour, marker, what the legend says
-    "tracing.rays": (ORANGE, "s", "vogel: rays"),
-    "tracing.min_amplitude": (PURPLE, "v", "vogel: min_amplitude"),
-    "tracing.accuracy": (BLUE, "o", "paths: accuracy"),
-    "tracing.max_intersections": (GREEN, "^", "paths: max_intersections"),
+    "tracing.rays": (ORANGE, "s", f"{COUNTED_RAYS.name}: rays"),
+    "tracing.min_amplitude": (PURPLE, "v", f"{COUNTED_RAYS.name}: min_amplitude"),
+    "tracing.accuracy": (BLUE, "o", f"{LIGHT_PATHS.name}: accuracy"),
+    "tracing.max_intersections": (GREEN, "^", f"{LIGHT_PATHS.name}: max_intersections"),
     "run": (BLACK, "D", "the run's own"),
 }
 _PANELS = (

@@ -15,7 +15,7 @@ _POINT = struct.Struct("<dd")
 
 @cache
 def _machine_code() -> Mapping[str, str]:
-    """Say what turns the sources into numbers: its last bits may differ with any of these."""
+    """Return what turns the sources into numbers: its last bits may differ with any of these."""
     libraries = {name: version(name) for name in ("numpy", "numba", "llvmlite")}
     processor = llvmlite.binding.get_host_cpu_name()
     features = llvmlite.binding.get_host_cpu_features().flatten()
@@ -51,7 +51,7 @@ def instrument_key(parts: Mapping[str, object], code: str) -> bytes:
 
 
 def point_key(instrument: bytes, diameter: float, focus: float) -> bytes:
-    """Give the key of a point of an instrument: diameter and focus, µm, follow its digest.
+    """Return the key of a point of an instrument: diameter and focus, µm, follow its digest.
 
     Equal numbers are equal keys: −0 is 0.
     """

@@ -44,7 +44,7 @@ def checked_slope(spectra: Array, step: float) -> Array:
 
 
 def fisher_information(expected: Array, derivatives: Array, read_noise: float = 0.0) -> Array:
-    r"""Give the Fisher information of P parameters in counts of K samples.
+    r"""Return the Fisher information of P parameters in counts of K samples.
 
     .. math:: F_{ij} = \sum_k \frac{\partial_i \mu_k\, \partial_j \mu_k}{\mu_k + \sigma^2}
 
@@ -68,7 +68,7 @@ def fisher_information(expected: Array, derivatives: Array, read_noise: float = 
 def diameter_bound(
     intensity: Array, slope: Array, photons: float, read_noise: float = 0.0
 ) -> float:
-    """Give the least standard deviation of a diameter, in the unit that the slope is by.
+    """Return the least standard deviation of a diameter, in the unit that the slope is by.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def diameter_bound(
 def phase_bound(
     offset: Array, amplitude: Array, angle: Array, nuisances: Array, read_noise: float = 0.0
 ) -> float:
-    """Give the least standard deviation of the phase of a sinusoid, rad.
+    """Return the least standard deviation of the phase of a sinusoid, rad.
 
     Parameters
     ----------

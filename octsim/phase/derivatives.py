@@ -25,12 +25,12 @@ def wrapped(angle: Array) -> Array:
 
 
 def advance(before: NDArray[np.complex128], after: NDArray[np.complex128]) -> Array:
-    """Give by how much the phase moves from one complex number to another, in (−π, π]."""
+    """Return by how much the phase moves from one complex number to another, in (−π, π]."""
     return np.angle(after * before.conj())
 
 
 def stencil(at: float, step: float, least: float = -np.inf, most: float = np.inf) -> Array:
-    """Give five evenly spaced changes around 0, shape (5,), from −step to step.
+    """Return five evenly spaced changes around 0, shape (5,), from −step to step.
 
     Where ``at`` plus a change would leave the range from `least` to `most` they are moved as a
     whole, by no more than it takes.

@@ -75,7 +75,7 @@ def read_series(path: str | Path) -> Series:
 
 
 def _problem(series: Series) -> str | None:
-    """Say in a line what is wrong with a series, if something is."""
+    """Return in a line what is wrong with a series, if something is."""
     time, phase, error = series
     if phase.ndim != 1 or any(part is not None and part.shape != phase.shape for part in series):
         return "time, phase and phase_error are not of one length; give each sample all of them"

@@ -47,7 +47,7 @@ def measured_counts(
 
 
 def signal_to_noise(intensity: Array, photons: float, read_noise: float) -> Array:
-    r"""Give the signal-to-noise ratio of spectra (..., K), as a ratio of powers, shape (...).
+    r"""Return the signal-to-noise ratio of spectra (..., K), as a ratio of powers, shape (...).
 
     .. math:: \mathrm{SNR} = \frac{\sum_k (\mu_k - \bar\mu)^2}{2\,\overline{(\mu_k + \sigma^2)}}
 
@@ -63,7 +63,7 @@ def signal_to_noise(intensity: Array, photons: float, read_noise: float) -> Arra
 
 
 def photons_for(intensity: Array, ratio: float, read_noise: float) -> float:
-    """Give the photons in a spectrum (K,) whose signal-to-noise ratio (of powers) is as asked.
+    """Return the photons in a spectrum (K,) whose signal-to-noise ratio (of powers) is as asked.
 
     The ratio is a N² / (N/K + σ²), which is solved for N.
     """

@@ -23,7 +23,7 @@ class PhaseSlopes(NamedTuple):
 
 
 def turns(phase: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give by how much phases (D, ...) turn from one to the next, (D − 1, ...), in [−π, π].
+    """Return by how much phases (D, ...) turn from one to the next, (D − 1, ...), in [−π, π].
 
     This is the step of the unwrapped phase, but as it adds nothing up it does not depend on where a
     sweep begins.

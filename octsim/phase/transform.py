@@ -14,7 +14,7 @@ Named = str | tuple[Any, ...]
 
 
 def window_samples(window: Named, num: int) -> Array:
-    """Give a symmetric window of scipy.signal.windows, shape (num,)."""
+    """Return a symmetric window of scipy.signal.windows, shape (num,)."""
     # half a second to import, which only those who need it should wait for
     from scipy.signal import get_window
 

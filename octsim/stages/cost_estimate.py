@@ -12,12 +12,15 @@ from octsim.config.derive import counting_rays
 from octsim.config.grid import axes, combinations
 from octsim.config.models import Config
 from octsim.config.scheme import options_of, scheme_of
+from octsim.datasets.catalog import CATALOG, Stage
 from octsim.datasets.keys import keys_behind
 from octsim.instrument.point_store import opened
 from octsim.schemes.cost import PointCost
+from octsim.schemes.table import COUNTED_RAYS
 from octsim.stages.workload import point_cost
 
-_SUMMING = 1e-7  # s a sample, of summing, transforming and differentiating a spectrum
+_SUMMING = 1e-7  # s a sample, of summing a spectrum
+_PATH_BYTES = 40  # of what is kept of each path of a point
 _JOB_BYTES = 3e8  # of a process with its libraries, compiled code and blocks
 _SAMPLE_MEMORY = 1000.0  # bytes, of each sample of the spectra in a block
 _ENOUGH = 50  # points, to know what one takes
@@ -42,7 +45,7 @@ class Cost(NamedTuple):
     """Of its process."""
 
     def and_also(self, other: "Cost") -> "Cost":
-        """Give what two take, one after the other."""
+        """Return what two take, one after the other."""
         return Cost(
             self.points + other.points,
             self.cpu_seconds + other.cpu_seconds,
@@ -60,7 +63,7 @@ class Estimate(NamedTuple):
     """By stage: those that trace, and those that take processor time or disk."""
 
     def of(self, *stages: str) -> Cost:
-        """Give what some stages take together."""
+        """Return what some stages take together."""
         return functools.reduce(
             Cost.and_also, (self.stages[s] for s in stages if s in self.stages), Cost()
         )
@@ -93,50 +96,32 @@ def estimate(config: Config, measured: Callable[[str, PointCost], PointCost]) ->
         scheme's own, which it is given too.
     """
 
-    def over(stage: str, cost: Callable[[Config], Cost]) -> Cost:
-        every = (cost(at.config) for at in combinations(config, *keys_behind(stage, config)))
-        return functools.reduce(Cost.and_also, every, Cost())
-
     def rate(of: Config) -> PointCost:
         return measured(rate_name(of), point_cost(of))
 
-    def traced(of: Config, count: int, *, summed: bool) -> Cost:
-        cost = rate(of)
-        sums = _SUMMING * of.spectrum.samples if summed else 0.0
-        return Cost(count, count * (cost.seconds + sums), 0.0, _JOB_BYTES + cost.memory)
+    def traced(of: Config, row: Stage, *, sums: bool) -> Cost:
+        count, cost = math.prod(row.points(of) if row.points else (0,)), rate(of)
+        summing = _SUMMING * of.spectrum.samples if sums else 0.0
+        disk = 0.0 if row.sums else count * (cost.size + _PATH_BYTES * cost.paths)
+        return Cost(count, count * (cost.seconds + summing), disk, _JOB_BYTES + cost.memory)
 
-    def scan(of: Config) -> Cost:
-        count = of.focus_scan.focus.num
-        cost = traced(of, count, summed=True)
-        if scheme_of(of).counts_rays:
+    def cost_of(row: Stage, of: Config) -> Cost:
+        if row.traces:
+            cost = traced(of, row, sums=row.sums)
+            counts_too = set(COUNTED_RAYS.keys) <= set(row.reads)
+            if counts_too and not scheme_of(of).counts_rays:
+                cost = cost.and_also(traced(counting_rays(of), row, sums=False))
             return cost
-        return cost.and_also(traced(counting_rays(of), count, summed=False))
+        values = of.sweep.diameters.num * of.spectrum.samples
+        seconds, size = row.per_sample
+        memory = _JOB_BYTES + _SAMPLE_MEMORY * of.spectrum.samples
+        return Cost(0, seconds * values, size * values, memory)
 
-    def sweep(of: Config) -> Cost:
-        count = of.focus_law.diameters.num * of.focus_law.fraction.num
-        return traced(of, count, summed=True)
+    def over(row: Stage) -> Cost:
+        every = combinations(config, *keys_behind(row.name, config))
+        return functools.reduce(Cost.and_also, (cost_of(row, at.config) for at in every), Cost())
 
-    def detected(of: Config) -> Cost:
-        count = of.sweep.diameters.num
-        disk = count * (rate(of).size + 40 * rate(of).paths)
-        return traced(of, count, summed=False)._replace(disk_bytes=disk)
-
-    def processed(each: float, bytes_each: float) -> Callable[[Config], Cost]:
-        def cost(of: Config) -> Cost:
-            values = of.sweep.diameters.num * of.spectrum.samples
-            memory = _JOB_BYTES + _SAMPLE_MEMORY * of.spectrum.samples
-            return Cost(0, each * values, bytes_each * values, memory)
-
-        return cost
-
-    stages = {
-        "focus_scan": over("focus_scan", scan),
-        "focus_sweep": over("focus_sweep", sweep),
-        "detections": over("detections", detected),
-        "spectra": over("spectra", processed(2 * _SUMMING, 8.0)),
-        # magnitude and phase, and slopes, of half as many components
-        "phase_slope": over("phase_slope", processed(_SUMMING, 12.0)),
-    }
+    stages = {row.name: over(row) for row in CATALOG.values() if row.traces or any(row.per_sample)}
     return Estimate(math.prod(len(axis.rows) for axis in axes(config)), stages)
 
 

@@ -85,7 +85,7 @@ def _detected(
 
 
 def _foci(layout: Layout, law: xr.Dataset | None) -> dict[tuple[int, ...], NDArray[np.float64]]:
-    """Give the foci of each combination; NaN where there is no law, unless there is none at all."""
+    """Return the foci of each combination; NaN where it has no law, unless none has one."""
     stored = Stored(law, "focus_law", layout.config) if law is not None else None
     focus: dict[tuple[int, ...], NDArray[np.float64]] = {}
     failed: list[str] = []

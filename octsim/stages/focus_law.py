@@ -61,7 +61,7 @@ def focus_law(config: Config, fits: xr.Dataset) -> Stream:
 
 
 def sweep_foci(config: Config, law: xr.Dataset | None) -> NDArray[np.float64]:
-    """Give the focus of each diameter of the sweep, from the given line or the fitted law.
+    """Return the focus of each diameter of the sweep, from the given line or the fitted law.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def sweep_foci(config: Config, law: xr.Dataset | None) -> NDArray[np.float64]:
 
 
 def focus_line(config: Config, law: xr.Dataset | None) -> FocusLine:
-    """Give the line that the focus follows: the config's, or the fitted law.
+    """Return the line that the focus follows: the config's, or the fitted law.
 
     Raises
     ------

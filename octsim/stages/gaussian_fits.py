@@ -52,7 +52,7 @@ def gaussian(
 
 
 def interior_peaks(level: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Give the positions, not the first or the last, whose value is above its neighbours'."""
+    """Return the positions, not the first or the last, whose value is above its neighbours'."""
     inner = level[1:-1]
     return 1 + np.flatnonzero((inner > level[:-2]) & (inner >= level[2:]))
 

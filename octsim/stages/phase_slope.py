@@ -59,7 +59,7 @@ def _differentiated(layout: Layout, stored: Stored) -> Iterator[Part]:
 
 
 def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[str, Any]:
-    """Give the slopes of some diameters of a part that holds their neighbours too."""
+    """Return the slopes of some diameters of a part that holds their neighbours too."""
     inner = slice(before, before + span.stop - span.start)
     diameter, k = part["diameter"].values, config.spectrum.wavenumbers()
     found = phase_slopes(diameter, part["magnitude"].values, part["phase"].values)
@@ -86,7 +86,7 @@ def _figures(
     phase_slope: NDArray[np.float64],
     ideal_phase_slope: NDArray[np.float64],
 ) -> dict[str, Any]:
-    """Give the thesis's summary figures of a sweep."""
+    """Return the thesis's summary figures of a sweep."""
     k = config.spectrum.wavenumbers()
     predicted = predicted_phase_slope(config.scene.refractive_index.neuron, k[0], k[-1])
     deviation = phase_slope - predicted
@@ -104,7 +104,7 @@ def _figures(
 
 
 def summary(slopes: xr.Dataset) -> str:
-    """Say in one line what a run found."""
+    """Return in one line what a run found."""
     means = slopes["mean_phase_slope"].values
     if means.ndim:
         return (

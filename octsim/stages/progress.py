@@ -22,7 +22,7 @@ class _Lines(io.StringIO):
 
 
 def watched(stream: Stream) -> Stream:
-    """Give the same stage, telling of its progress as its parts are taken."""
+    """Return the same stage, telling of its progress as its parts are taken."""
     layout = stream.layout
 
     def parts() -> Iterator[Part]:

@@ -35,13 +35,13 @@ class Share(NamedTuple):
     """How many there are."""
 
     def blocks(self, layout: Layout) -> list[Block]:
-        """Give this share's blocks of a stage that traces."""
+        """Return this share's blocks of a stage that traces."""
         stage = layout.stage
         every = layout.blocks(lambda config: work_of(stage, config).together)
         return self.among(every, lambda config: work_of(stage, config).seconds)
 
     def among(self, blocks: Iterable[Block], seconds: Callable[[Config], float]) -> list[Block]:
-        """Give the blocks of this share: neighbours, and about as much to trace as any other's.
+        """Return the blocks of this share: neighbours, and about as much to trace as any other's.
 
         Parameters
         ----------
@@ -85,7 +85,7 @@ def write_share(
     path : path
         The file.
     notes : callable
-        Gives numbers to keep beside the parts, once all of them are made.
+        Returns numbers to keep beside the parts, once all of them are made.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def write_share(
 
 
 def gathered(stage: Stream, files: Iterable[Path]) -> Stream:
-    """Give a stage with the parts that its shares hold, in the order of the whole stage.
+    """Return a stage with the parts that its shares hold, in the order of the whole stage.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ _MOST_POINTS = 512
 
 
 def points_per_block(bytes_per_point: float, seconds_per_point: float = 0.0) -> int:
-    """Give how many points are worked on between two writes: by memory and by time, at least one.
+    """Return how many points are worked on between two writes: by memory and by time, at least one.
 
     It follows from the config alone, so that the same run gives the same file.
     """
@@ -48,20 +48,16 @@ class Work(NamedTuple):
 
 
 def work_of(stage: str, config: Config) -> Work:
-    """Give what a stage that traces has to do at a plain config."""
-    cost = point_cost(config)
-    count, each = {
-        "focus_scan": (config.focus_scan.focus.num, 1),
-        # a diameter's foci are one row of the dataset
-        "focus_sweep": (config.focus_law.diameters.num, config.focus_law.fraction.num),
-        "detections": (config.sweep.diameters.num, 1),
-    }[stage]
+    """Return what a stage that traces has to do at a plain config."""
+    points, cost = CATALOG[stage].points, point_cost(config)
+    assert points is not None
+    count, each = points(config)
     together = points_per_block(each * cost.size, each * cost.seconds)
     return Work(count, each * cost.seconds, together)
 
 
 def shares_of(config: Config) -> dict[str, int]:
-    """Give how many jobs each stage that traces is scattered over.
+    """Return how many jobs each stage that traces is scattered over.
 
     They are of ``scatter.minutes`` of processor time each, or of one block where that takes longer,
     by rates that are the same everywhere: where a run is made does not change its jobs.

@@ -44,7 +44,7 @@ def esprit(intensity: Array, wavenumber: Array, depth: Array, processing: Proces
 
 
 def _block_sizes(wavenumber: Array, depth: Array) -> NDArray[np.int64]:
-    """Give how many neighbouring samples have one mean, of each spectrum (D,)."""
+    """Return how many neighbouring samples have one mean, of each spectrum (D,)."""
     band = wavenumber[-1] - wavenumber[0]
     wanted = np.maximum(_BLOCKS, (_PER_OSCILLATION * depth * band / np.pi).astype(int))
     sizes: NDArray[np.int64] = np.maximum(1, wavenumber.size // wanted)

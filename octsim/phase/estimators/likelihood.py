@@ -79,7 +79,7 @@ _TINY = 1e-9  # of the light, per sample: a dark fringe must not forbid a count
 
 
 def _nearest(intensity: Array, light: Array, share: Array, extra: float) -> Array:
-    """Give which modelled spectrum is likeliest, (D,), each spectrum by itself."""
+    """Return which modelled spectrum is likeliest, (D,), each spectrum by itself."""
     return np.array(
         [
             int((np.log(share + extra / own + _TINY) @ (counts + extra)).argmax())

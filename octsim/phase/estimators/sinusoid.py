@@ -76,7 +76,7 @@ def sinusoid(intensity: Array, wavenumber: Array, depth: Array, processing: Proc
 
 
 def _polynomials(wavenumber: Array, options: Options) -> Envelope:
-    """Give the powers of the place in the band, from −1 to 1."""
+    """Return the powers of the place in the band, from −1 to 1."""
     x = place(wavenumber)[:, np.newaxis]
     amplitude = x ** np.arange(options.amplitude_degree + 1)
     return Envelope(x ** np.arange(options.offset_degree + 1), amplitude.astype(complex))
@@ -101,14 +101,14 @@ def _common(intensity: Array, wavenumber: Array, depth: Array, processing: Proce
 
 
 def _shot(fitted: Array, intensity: Array, variance: float) -> Array:
-    """Give the square roots of the weights of counts that fitted spectra ask for, (D, K)."""
+    """Return the square roots of the weights of counts that fitted spectra ask for, (D, K)."""
     least = DARKEST * np.abs(intensity).mean(axis=1, keepdims=True) + np.finfo(float).tiny
     roots: Array = 1 / np.sqrt(np.maximum(fitted, least) + variance)
     return roots
 
 
 def _equal(fitted: Array, _: Array, __: float) -> Array:
-    """Give the same weight to every sample."""
+    """Return the same weight to every sample."""
     return np.ones_like(fitted)
 
 
@@ -194,18 +194,18 @@ _FITS = {"held": _held, "fitted": _fitted}
 
 
 def _waves(wavenumber: Array, depth: Array, envelope: Envelope) -> NDArray[np.complex128]:
-    """Give the oscillations with their amplitudes' shapes, (D, K, Q)."""
+    """Return the oscillations with their amplitudes' shapes, (D, K, Q)."""
     return product(oscillation(wavenumber, depth)[..., np.newaxis], envelope.amplitude)
 
 
 def _columns(waves: NDArray[np.complex128], envelope: Envelope) -> Array:
-    """Give what the real linear parameters multiply, (D, K, P + 2Q)."""
+    """Return what the real linear parameters multiply, (D, K, P + 2Q)."""
     offset = np.broadcast_to(envelope.offset, (waves.shape[0], *envelope.offset.shape))
     return np.concatenate([offset, waves.real, waves.imag], axis=2)
 
 
 def _sum(columns: Array, found: Array) -> Array:
-    """Give the spectra (D, K) that parameters (D, N) of the columns stand for."""
+    """Return the spectra (D, K) that parameters (D, N) of the columns stand for."""
     fitted: Array = (columns @ found[..., np.newaxis])[..., 0]
     return fitted
 
