@@ -32,8 +32,8 @@ except octsim.ConfigError as error:
 endef
 export CHECK
 
-.PHONY: results archive reproduce test test-all test-processors lint format docs bench bench-sweeps bench-peers kills lock \
-	slurm test-slurm bench-slurm clean
+.PHONY: results archive reproduce test test-all test-processors lint format docs bench bench-sweeps \
+	bench-peers kills lock slurm test-slurm bench-slurm clean
 results: .venv/run
 	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
 	@$(BIN)/snakemake --cores $(CORES) --configfile "$(CONFIG)"

@@ -176,7 +176,7 @@ rule all:
 
 rule share:
     input:
-        lambda wildcards: sources((CATALOG[wildcards.stage],)).values(),
+        unpack(lambda wildcards: sources((CATALOG[wildcards.stage],))),
     output:
         temp(f"{FOLDER}/shares/{{stage}}-{{number}}-of-{{of}}.npz"),
     log:
