@@ -11,7 +11,7 @@ import xarray as xr
 from octsim.archive.compare_conditions import TOLERANCE, Condition, condition, same_environment
 from octsim.archive.compare_origins import Change, config_changes, version_changes
 from octsim.archive.compare_points import Common, blocks, common_points
-from octsim.archive.compare_values import UNKNOWN, Deviation, Kind, deviation, kind_of
+from octsim.archive.compare_values import UNKNOWN, Deviation, ValueKind, deviation, value_kind
 from octsim.archive.recorded import Recorded, recorded
 from octsim.base.errors import DatasetError
 from octsim.base.files import reason
@@ -40,7 +40,7 @@ class VariableComparison(NamedTuple):
     """A variable of a dataset in two runs."""
 
     name: str
-    kind: Kind
+    kind: ValueKind
     deviation: Deviation
     unlike: str = ""
     """Why its values can't be compared, if they can't."""
@@ -49,7 +49,7 @@ class VariableComparison(NamedTuple):
 
     def differs(self, tolerance: float) -> bool:
         """Return whether it is another than in the other run; what is measured never is."""
-        if self.kind is Kind.MEASURED:
+        if self.kind is ValueKind.MEASURED:
             return False
         apart = self.deviation
         beyond = not apart.relative <= max(tolerance, self.allowed)
@@ -213,8 +213,8 @@ def _dataset(
 def _allowed(one: VariableComparison, dataset: xr.Dataset, by: Condition) -> VariableComparison:
     """Judge a variable as its condition allows."""
     if one.name in ADDED:
-        return one._replace(kind=Kind.MEASURED)
-    if one.kind not in (Kind.NUMBER, Kind.ANGLE) or one.unlike:
+        return one._replace(kind=ValueKind.MEASURED)
+    if one.kind not in (ValueKind.NUMBER, ValueKind.ANGLE) or one.unlike:
         return one
     units = str(dataset[one.name].attrs.get("units", "1"))
     return one._replace(allowed=by.tolerance(one.name, units, one.deviation.scale))
@@ -224,9 +224,9 @@ def _variable(
     name: str, first: xr.Dataset, second: xr.Dataset, common: Mapping[str, Common]
 ) -> VariableComparison:
     one, other = first.variables[name], second.variables[name]
-    kind = kind_of(name, one.dtype, name in first.coords or name in second.coords)
+    kind = value_kind(name, one.dtype, name in first.coords or name in second.coords)
     unlike = _unlike(one, other, common)
-    if unlike or kind is Kind.MEASURED:
+    if unlike or kind is ValueKind.MEASURED:
         return VariableComparison(name, kind, Deviation(), unlike)
     apart = deviation(blocks(one, other, common), kind, name in UNKNOWN)
     return VariableComparison(name, kind, apart)

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 
 from octsim.archive.compare import Comparison, DatasetComparison, Scalar, VariableComparison
 from octsim.archive.compare_origins import Change
-from octsim.archive.compare_values import Kind
+from octsim.archive.compare_values import ValueKind
 
 _SIDES = ("A", "B")
 
@@ -55,11 +55,11 @@ def _dataset(dataset: DatasetComparison, tolerance: float) -> Iterator[str]:
 
 def _variable(variable: VariableComparison) -> str:
     apart = variable.deviation
-    if variable.kind is Kind.MEASURED:
+    if variable.kind is ValueKind.MEASURED:
         return "measured, not judged"
     if variable.unlike:
         return variable.unlike
-    if variable.kind is Kind.EXACT:
+    if variable.kind is ValueKind.EXACT:
         return f"{apart.unequal} of {apart.values} not equal" if apart.unequal else "equal"
     text = f"{apart.relative:.2e}" if apart.relative else "0"
     elsewhere = f", NaN at {apart.misplaced} of {apart.values} places in one alone"

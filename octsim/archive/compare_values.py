@@ -19,7 +19,7 @@ UNKNOWN = frozenset({"phase", "component_phase_slope"})
 there, and another processor may have: a point that one of the two calls NaN is not compared."""
 
 
-class Kind(Enum):
+class ValueKind(Enum):
     """How a variable is judged."""
 
     NUMBER = "number"
@@ -49,17 +49,19 @@ class Deviation(NamedTuple):
     """max |b|."""
 
 
-def kind_of(name: str, dtype: np.dtype[Any], is_coordinate: bool) -> Kind:
+def value_kind(name: str, dtype: np.dtype[Any], is_coordinate: bool) -> ValueKind:
     """Return how a variable is judged."""
     if name in MEASURED:
-        return Kind.MEASURED
+        return ValueKind.MEASURED
     if is_coordinate or dtype.kind != "f":
-        return Kind.EXACT
-    return Kind.ANGLE if name in WRAPPED else Kind.NUMBER
+        return ValueKind.EXACT
+    return ValueKind.ANGLE if name in WRAPPED else ValueKind.NUMBER
 
 
 def deviation(
-    blocks: Iterable[tuple[NDArray[Any], NDArray[Any]]], kind: Kind, may_be_unknown: bool = False
+    blocks: Iterable[tuple[NDArray[Any], NDArray[Any]]],
+    kind: ValueKind,
+    may_be_unknown: bool = False,
 ) -> Deviation:
     """Compare values that come in blocks of the same shape.
 
@@ -79,7 +81,7 @@ def deviation(
         same = one == other
         if one.dtype.kind == "f":
             same |= np.isnan(one) & np.isnan(other)
-        if kind is Kind.EXACT or one.dtype.kind != "f":
+        if kind is ValueKind.EXACT or one.dtype.kind != "f":
             unequal += int((~same).sum())
             continue
         finite = np.isfinite(one) & np.isfinite(other)
@@ -91,7 +93,7 @@ def deviation(
         misplaced += int(elsewhere.sum())
         with np.errstate(over="ignore"):  # of damaged values: then it is infinite, and said so
             difference = one[finite] - other[finite]
-        if kind is Kind.ANGLE:
+        if kind is ValueKind.ANGLE:
             difference = wrapped(difference)
         largest = max(largest, float(np.abs(difference).max(initial=0.0)))
         scale = max(scale, float(np.abs(other[finite]).max(initial=0.0)))

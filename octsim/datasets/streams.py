@@ -124,7 +124,7 @@ class _Memory:
         }
 
 
-def gathered(stream: Stream) -> xr.Dataset:
+def in_memory(stream: Stream) -> xr.Dataset:
     """Put a stage's parts together in memory."""
     layout = stream.layout
     memory = _Memory(layout.sizes)
@@ -142,4 +142,4 @@ class Streamed(Generic[Parameters]):
 
     def __call__(self, *arguments: Parameters.args, **keywords: Parameters.kwargs) -> xr.Dataset:
         """Return the stage's dataset, in memory."""
-        return gathered(self.stream(*arguments, **keywords))
+        return in_memory(self.stream(*arguments, **keywords))

@@ -19,7 +19,7 @@ from octsim.schemes.field_sum import spectrum_of
 from octsim.schemes.light import AccuracyStatus, Light, LightAt
 
 
-class Spectrum(NamedTuple):
+class PointSpectrum(NamedTuple):
     """The intensity of one point over the wavenumbers."""
 
     intensity: NDArray[np.float64]
@@ -69,12 +69,12 @@ class Instrument:
         """Return the detected light of a diameter at a focus, both µm."""
         return self._light_at(diameter, focus)
 
-    def sum(self, light: Light) -> Spectrum:
+    def sum(self, light: Light) -> PointSpectrum:
         """Sum light of this instrument to its spectrum."""
         field = self.scheme.field(light, self.wavenumber, self._options)
-        return Spectrum(*spectrum_of(field), light.status)
+        return PointSpectrum(*spectrum_of(field), light.status)
 
-    def spectrum(self, diameter: float, focus: float) -> Spectrum:
+    def spectrum(self, diameter: float, focus: float) -> PointSpectrum:
         """Return the spectrum of a diameter at a focus, both µm."""
         return self.sum(self.light(diameter, focus))
 

@@ -12,7 +12,7 @@ _NUMBER = 8
 _ARRAYS = 4
 
 
-def pack(light: Light) -> bytes:
+def light_to_bytes(light: Light) -> bytes:
     """Write light as bytes: a header, then its arrays one after the other, little-endian.
 
     Parameters
@@ -41,7 +41,7 @@ def pack(light: Light) -> bytes:
     )
 
 
-def unpack(body: bytes) -> Light:
+def light_from_bytes(body: bytes) -> Light:
     """Read light from bytes.
 
     Raises

@@ -14,7 +14,7 @@ _OURS = re.compile("[0-9a-f]{2}|octsim-.*")  # names of what stores are made of
 _DATABASE = b"OCTP"  # in bytes 68 to 71 of it
 
 
-def expanded(named: str) -> Path:
+def expanded_path(named: str) -> Path:
     """Return the path that ``cache.file`` names, as this machine has it here and now.
 
     Raises

@@ -21,7 +21,7 @@ from octsim.base.files import reason
 from octsim.instrument.point_folder import (
     VERSION,
     described,
-    expanded,
+    expanded_path,
     folder_of,
     make_folder,
     old_cache,
@@ -190,7 +190,7 @@ class PointStore:
             _LOGGER.warning("octsim: warning: %s: %s", self.folder, text)
 
 
-def opened(cache: "Cache") -> PointStore | None:
+def open_store(cache: "Cache") -> PointStore | None:
     """Return the store that a config names; None of no gigabytes, which keep and read nothing.
 
     Raises
@@ -200,7 +200,7 @@ def opened(cache: "Cache") -> PointStore | None:
     CacheError
         As `PointStore`.
     """
-    file = expanded(cache.file)
+    file = expanded_path(cache.file)
     return PointStore(file, cache.gigabytes) if cache.gigabytes else None
 
 

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from octsim.instrument.point_entries import pack, unpack
+from octsim.instrument.point_entries import light_from_bytes, light_to_bytes
 from octsim.instrument.point_keys import point_key
 from octsim.schemes.light import Light
 
@@ -56,11 +56,11 @@ class Points:
             if body is not None:
                 with self._lock:
                     self.from_cache += 1
-                return unpack(body)
+                return light_from_bytes(body)
             begin = time.thread_time()
             light = self._counted(find(diameter, focus))
             seconds = time.thread_time() - begin
-            body = pack(light)
+            body = light_to_bytes(light)
             store.put(key, body)
             self._time(rate, seconds, len(body))
             return light

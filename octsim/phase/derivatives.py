@@ -24,7 +24,7 @@ def wrapped(angle: Array) -> Array:
     return nearest
 
 
-def advance(before: NDArray[np.complex128], after: NDArray[np.complex128]) -> Array:
+def phase_advance(before: NDArray[np.complex128], after: NDArray[np.complex128]) -> Array:
     """Return by how much the phase moves from one complex number to another, in (−π, π]."""
     return np.angle(after * before.conj())
 
@@ -71,5 +71,5 @@ def phase_derivative(phasor: Callable[[float], NDArray[np.complex128]], step: fl
     """
     offsets = step * FRACTIONS
     here = phasor(0.0)
-    phases = [advance(here, phasor(by) if by else here) for by in offsets.tolist()]
+    phases = [phase_advance(here, phasor(by) if by else here) for by in offsets.tolist()]
     return derivative(offsets, np.stack(phases))

@@ -39,7 +39,7 @@ class Series(NamedTuple):
     """One standard deviation of each, rad, where it is known."""
 
 
-class Change(NamedTuple):
+class PhaseChange(NamedTuple):
     """Change of the phase from rest, rad, and its standard error; NaN where it is missing."""
 
     phase: Array
@@ -148,7 +148,7 @@ def _netcdf(path: Path) -> dict[str, Array]:
     }
 
 
-def change_from_rest(series: Series, rest: int) -> Change:
+def change_from_rest(series: Series, rest: int) -> PhaseChange:
     """Unwrap a series' phases, and subtract their mean over the first samples, where nothing moves.
 
     Missing samples stay missing, and are passed over when phases are unwrapped. Without a
@@ -187,4 +187,4 @@ def change_from_rest(series: Series, rest: int) -> Change:
     else:
         error = series.phase_error
     at_rest = np.sqrt((error[:rest][there[:rest]] ** 2).sum()) / still.size
-    return Change(phase - still.mean(), np.where(there, np.hypot(error, at_rest), np.nan))
+    return PhaseChange(phase - still.mean(), np.where(there, np.hypot(error, at_rest), np.nan))

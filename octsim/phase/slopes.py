@@ -22,7 +22,7 @@ class PhaseSlopes(NamedTuple):
     """Slope of the strongest component, (D,)."""
 
 
-def turns(phase: NDArray[np.float64]) -> NDArray[np.float64]:
+def phase_steps(phase: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return by how much phases (D, ...) turn from one to the next, (D − 1, ...), in [−π, π].
 
     This is the step of the unwrapped phase, but as it adds nothing up it does not depend on where a
@@ -61,14 +61,14 @@ def phase_slopes(
         Magnitude and phase (rad) of each component.
     """
     component = 1 + magnitude[:, 1:].argmax(axis=1)
-    by_component = gradient(turns(phase), diameter)
+    by_component = gradient(phase_steps(phase), diameter)
     strongest = np.take_along_axis(by_component, component[:, np.newaxis], axis=1)[:, 0]
     return PhaseSlopes(component, by_component, strongest)
 
 
 def slope_of(diameter: NDArray[np.float64], phase: NDArray[np.float64]) -> NDArray[np.float64]:
     """Differentiate phases (D,) over diameters (D,), µm, by central differences."""
-    return gradient(turns(phase), diameter)
+    return gradient(phase_steps(phase), diameter)
 
 
 def trend(diameter: NDArray[np.float64], slope: NDArray[np.float64]) -> NDArray[np.float64]:

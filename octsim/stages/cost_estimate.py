@@ -14,7 +14,7 @@ from octsim.config.models import Config
 from octsim.config.scheme import options_of, scheme_of
 from octsim.datasets.catalog import CATALOG, Stage
 from octsim.datasets.keys import keys_behind
-from octsim.instrument.point_store import opened
+from octsim.instrument.point_store import open_store
 from octsim.schemes.cost import PointCost
 from octsim.schemes.table import COUNTED_RAYS
 from octsim.stages.workload import point_cost
@@ -54,7 +54,7 @@ class Cost(NamedTuple):
         )
 
 
-class Estimate(NamedTuple):
+class RunEstimate(NamedTuple):
     """What a run takes."""
 
     combinations: int
@@ -84,7 +84,7 @@ class Estimate(NamedTuple):
         )
 
 
-def estimate(config: Config, measured: Callable[[str, PointCost], PointCost]) -> Estimate:
+def estimate(config: Config, measured: Callable[[str, PointCost], PointCost]) -> RunEstimate:
     """Estimate what a run takes.
 
     Parameters
@@ -122,10 +122,10 @@ def estimate(config: Config, measured: Callable[[str, PointCost], PointCost]) ->
         return functools.reduce(Cost.and_also, (cost_of(row, at.config) for at in every), Cost())
 
     stages = {row.name: over(row) for row in CATALOG.values() if row.traces or any(row.per_sample)}
-    return Estimate(math.prod(len(axis.rows) for axis in axes(config)), stages)
+    return RunEstimate(math.prod(len(axis.rows) for axis in axes(config)), stages)
 
 
-def expected(config: Config) -> Estimate:
+def expected(config: Config) -> RunEstimate:
     """Estimate what a run takes, by the rates that this cache's points were traced at.
 
     Raises
@@ -134,7 +134,7 @@ def expected(config: Config) -> Estimate:
         If what the cache's name stands for is none that can be used.
     """
     try:
-        store = opened(config.cache)
+        store = open_store(config.cache)
     except ConfigError:  # what is set for a cluster's jobs need not be where they are sent from
         store = None
 

@@ -70,10 +70,10 @@ def _points(job: Job, config: Config) -> Iterator["Points | None"]:
     if job.shares or not any(row.traces or row.beside for row in job.rows):
         yield None  # nor is numba imported
         return
-    from octsim.instrument.point_store import opened as opened_store
+    from octsim.instrument.point_store import open_store
     from octsim.instrument.points import Points
 
-    points = Points(opened_store(config.cache))
+    points = Points(open_store(config.cache))
     try:
         yield points
     finally:

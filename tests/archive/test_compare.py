@@ -19,7 +19,7 @@ from octsim.archive.compare_conditions import TOLERANCE
 from octsim.archive.compare_origins import Change
 from octsim.archive.compare_points import blocks, common_points
 from octsim.archive.compare_text import lines
-from octsim.archive.compare_values import MEASURED, WRAPPED, Deviation, Kind, deviation
+from octsim.archive.compare_values import MEASURED, WRAPPED, Deviation, ValueKind, deviation
 from octsim.cli.main import main
 from octsim.datasets.files import make as dataset_of_stage
 from octsim.datasets.files import write
@@ -207,9 +207,9 @@ def test_phases_are_compared_but_for_whole_turns(
 
 def test_zero_is_as_far_from_something_as_can_be() -> None:
     values = np.zeros(3), np.array([0.0, 1e-300, 0.0])
-    assert deviation([values], Kind.NUMBER).relative == 1.0
-    assert deviation([values[::-1]], Kind.NUMBER).relative == np.inf
-    assert deviation([(values[0], values[0])], Kind.NUMBER) == Deviation(values=3)
+    assert deviation([values], ValueKind.NUMBER).relative == 1.0
+    assert deviation([values[::-1]], ValueKind.NUMBER).relative == np.inf
+    assert deviation([(values[0], values[0])], ValueKind.NUMBER) == Deviation(values=3)
 
 
 def test_missing_variables_datasets_and_other_dimensions_are_named(

@@ -14,7 +14,7 @@ from hypothesis.extra.numpy import arrays
 
 from octsim.config.load import load_config
 from octsim.instrument.instrument import Instrument
-from octsim.instrument.point_entries import pack, unpack
+from octsim.instrument.point_entries import light_from_bytes, light_to_bytes
 from octsim.instrument.point_keys import instrument_key, point_key
 from octsim.schemes.light import AccuracyStatus, Light
 
@@ -47,7 +47,7 @@ def bits(light: Light) -> list[object]:
 
 @given(lights())
 def test_light_comes_back_to_the_bit(light: Light) -> None:
-    again = unpack(pack(light))
+    again = light_from_bytes(light_to_bytes(light))
     assert bits(again) == bits(light)
     assert [type(value) for value in again] == [type(value) for value in light]
     for one, other in zip(again, light, strict=True):
@@ -59,11 +59,11 @@ def test_light_comes_back_to_the_bit(light: Light) -> None:
 
 @given(lights(), st.data())
 def test_bytes_of_another_length_are_refused(light: Light, data: st.DataObject) -> None:
-    body = pack(light)
+    body = light_to_bytes(light)
     size = data.draw(st.integers(0, len(body) - 1))
     for wrong in (body[:size], body + b"\0", body + bytes(8)):
         with pytest.raises(ValueError, match="light"):
-            unpack(wrong)
+            light_from_bytes(wrong)
 
 
 @pytest.mark.parametrize(
@@ -73,13 +73,13 @@ def test_counts_and_statuses_that_cannot_be_are_refused(
     rays: int, counted: int, status: int
 ) -> None:
     with pytest.raises(ValueError, match=r"light|AccuracyStatus"):
-        unpack(struct.pack("<qqqqd", rays, counted, 1, status, 0.0))
+        light_from_bytes(struct.pack("<qqqqd", rays, counted, 1, status, 0.0))
 
 
 def test_arrays_of_different_lengths_are_refused() -> None:
     one, two = np.ones(1), np.ones(2)
     with pytest.raises(ValueError, match="one length"):
-        pack(Light(np.ones(2, np.int64), two, one, two, 0.0, 1, AccuracyStatus.REACHED))
+        light_to_bytes(Light(np.ones(2, np.int64), two, one, two, 0.0, 1, AccuracyStatus.REACHED))
 
 
 def test_kept_light_sums_to_the_same_spectrum() -> None:
@@ -87,7 +87,7 @@ def test_kept_light_sums_to_the_same_spectrum() -> None:
     light = Instrument(config).light(1.4, 0.9)
     assert light.amplitude.size > 0
     spectrum, error, _ = Instrument(config).sum(light)
-    again, error_again, _ = Instrument(config).sum(unpack(pack(light)))
+    again, error_again, _ = Instrument(config).sum(light_from_bytes(light_to_bytes(light)))
     assert again.tobytes() == spectrum.tobytes()
     assert error_again == error
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from octsim.base.errors import ConfigError
-from octsim.instrument.point_folder import expanded, folder_of, old_cache
+from octsim.instrument.point_folder import expanded_path, folder_of, old_cache
 from octsim.instrument.point_store import PointStore, describe
 
 OLD = b"SQLite format 3\0".ljust(68, b"\0") + b"OCTP".ljust(8124, b"\0")
@@ -15,14 +15,14 @@ def test_a_folder_is_where_it_is_named_with_environment_variables(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setenv("SLURM_JOB_ID", "7")  # nodes share it
-    assert expanded(".octsim/points") == Path(".octsim/points")
-    assert expanded("~/points") == Path.home() / "points"
+    assert expanded_path(".octsim/points") == Path(".octsim/points")
+    assert expanded_path("~/points") == Path.home() / "points"
     monkeypatch.setenv("OCTSIM_TEST_DISK", "/disk")
     named = "$OCTSIM_TEST_DISK/of.${OCTSIM_TEST_USER}.points"
     with pytest.raises(ConfigError, match=r"^cache\.file: .* variable OCTSIM_TEST_USER is not set"):
-        expanded(named)
+        expanded_path(named)
     monkeypatch.setenv("OCTSIM_TEST_USER", "me")
-    assert expanded(named) == Path("/disk/of.me.points")
+    assert expanded_path(named) == Path("/disk/of.me.points")
 
 
 @pytest.mark.parametrize("content", [OLD, b""])

@@ -22,7 +22,7 @@ from store_worker import ENTRIES, GIGABYTES, POINTS, SOME, put, right
 
 from octsim.base.errors import CacheError
 from octsim.config.models import Cache
-from octsim.instrument.point_store import PointStore, Rate, clear, describe, opened
+from octsim.instrument.point_store import PointStore, Rate, clear, describe, open_store
 
 KILLS = int(os.environ.get("OCTSIM_KILLS", "4"))
 GB = 0.1
@@ -92,7 +92,7 @@ def test_the_last_put_of_a_key_counts(file: Path) -> None:
 
 
 def test_no_gigabytes_are_no_store() -> None:
-    assert opened(Cache(gigabytes=0)) is None
+    assert open_store(Cache(gigabytes=0)) is None
 
 
 def test_the_least_recently_used_go_first(file: Path) -> None:

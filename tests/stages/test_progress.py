@@ -6,7 +6,7 @@ import pytest
 
 import octsim
 from octsim.config.load import load_config
-from octsim.datasets.streams import gathered
+from octsim.datasets.streams import in_memory
 from octsim.stages import progress
 
 
@@ -22,7 +22,7 @@ def test_a_log_tells_how_far_a_stage_is_and_how_long_it_takes(
         }
     )
     with caplog.at_level(logging.INFO):
-        watched = gathered(progress.watched(octsim.detections.stream(config)))
+        watched = in_memory(progress.watched(octsim.detections.stream(config)))
     assert watched.identical(octsim.detections(config))
     said = [record.getMessage() for record in caplog.records]
     assert any("detections:" in line and "10/15" in line and "point/s" in line for line in said)
@@ -31,5 +31,5 @@ def test_a_log_tells_how_far_a_stage_is_and_how_long_it_takes(
 def test_what_is_short_is_not_told_of(caplog: pytest.LogCaptureFixture) -> None:
     config = load_config({"tracing": {"rays": 50}, "focus_scan": {"focus": {"num": 5}}})
     with caplog.at_level(logging.INFO):
-        gathered(progress.watched(octsim.focus_scan.stream(config)))
+        in_memory(progress.watched(octsim.focus_scan.stream(config)))
     assert not caplog.records

@@ -15,7 +15,7 @@ from octsim.config.models import Config
 from octsim.datasets.files import read, write
 from octsim.figures.calibration import calibration_figure
 from octsim.figures.style import look, save
-from octsim.instrument.instrument import Instrument, Spectrum
+from octsim.instrument.instrument import Instrument, PointSpectrum
 from octsim.optics.two_beams import ideal_spectra, predicted_phase_slope
 from octsim.phase.derivatives import wrapped
 from octsim.phase.estimators.series import series_phases
@@ -65,12 +65,12 @@ class Plates(Instrument):
     holds, with the phase 2nd k_m + BEND d² + LEAN z at the middle k_m of the band as it is.
     """
 
-    def spectrum(self, diameter: float, focus: float) -> Spectrum:
+    def spectrum(self, diameter: float, focus: float) -> PointSpectrum:
         k, n = self.wavenumber, self.config.scene.refractive_index.neuron
         held = TABLE[np.abs(TABLE - diameter).argmin()]
         phase = n * diameter * (k[0] + k[-1]) + BEND * diameter**2 + LEAN * focus
         intensity = 2 + np.cos(2 * N * held * (K - (K[0] + K[-1]) / 2) + phase)
-        return Spectrum(intensity, 1e-12, AccuracyStatus.REACHED)
+        return PointSpectrum(intensity, 1e-12, AccuracyStatus.REACHED)
 
 
 def asked(**overlay: object) -> Config:

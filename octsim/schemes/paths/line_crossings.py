@@ -38,7 +38,7 @@ class Map(NamedTuple):
     """`octsim.optics.detector.rim_margin`."""
 
 
-class Line(NamedTuple):
+class TileLine(NamedTuple):
     """A `Map` at one ξ: coefficients in v, and room to work in."""
 
     x: NDArray[np.float64]
@@ -62,10 +62,10 @@ class Line(NamedTuple):
 
 
 @register_jitable
-def room_for_line() -> Line:
+def room_for_line() -> TileLine:
     """Make the room that `moments` works in."""
     size = HIGHEST
-    return Line(
+    return TileLine(
         np.empty(size), np.empty(size), np.empty(size), np.empty(size), np.empty(size),
         np.empty(size), np.empty(size), np.empty(size), np.empty(_CUTS), np.empty(_CUTS),
         np.empty(_CUTS), np.empty(size), np.empty(size),
@@ -84,7 +84,7 @@ class Cut(NamedTuple):
 
 
 @register_jitable
-def set_line(cut: Cut, xi: float, line: Line) -> None:
+def set_line(cut: Cut, xi: float, line: TileLine) -> None:
     """Find the polynomials in v of a tile's map along the line at ξ."""
     n, m, returns, tile = cut.n, cut.m, cut.returns, cut.tile
     s = xi * xi if cut.symmetric else xi
@@ -104,7 +104,7 @@ def set_line(cut: Cut, xi: float, line: Line) -> None:
 
 
 @register_jitable
-def margins(cut: Cut, xi: float, line: Line, y: float) -> tuple[float, float, float]:
+def margins(cut: Cut, xi: float, line: TileLine, y: float) -> tuple[float, float, float]:
     """Return how far inside the detector's image, and the objective's rim, light returns (> 0).
 
     And how far to the side of the focus, over R_det, which changes its sign within a patch.
@@ -123,14 +123,14 @@ def margins(cut: Cut, xi: float, line: Line, y: float) -> tuple[float, float, fl
 
 
 @register_jitable(forceinline=True)
-def margin(cut: Cut, xi: float, line: Line, y: float) -> float:
+def margin(cut: Cut, xi: float, line: TileLine, y: float) -> float:
     """Return how far inside the patch a place on a line is (> 0)."""
     at_detector, at_rim, _ = margins(cut, xi, line, y)
     return min(at_detector, at_rim)
 
 
 @register_jitable
-def falloffs(cut: Cut, xi: float, line: Line, y: float) -> tuple[float, float]:
+def falloffs(cut: Cut, xi: float, line: TileLine, y: float) -> tuple[float, float]:
     """Return the falloff at a place on a line, and that from a rougher map."""
     tile, m = cut.tile, cut.m
     polynomials((y * y - tile.v_min) / (tile.v_max - tile.v_min), m, line.u)
@@ -172,7 +172,7 @@ def _narrowed(
 
 
 @register_jitable
-def edge(cut: Cut, xi: float, line: Line, low: float, high: float) -> float:
+def edge(cut: Cut, xi: float, line: TileLine, low: float, high: float) -> float:
     """Return where the margin along a line changes its sign (Illinois)."""
     at_low, at_high, side = margin(cut, xi, line, low), margin(cut, xi, line, high), 0
     y = low
@@ -186,7 +186,7 @@ def edge(cut: Cut, xi: float, line: Line, low: float, high: float) -> float:
 
 
 @register_jitable
-def end_of(cut: Cut, line: Line, y: float, which: int, low: float, high: float) -> float:
+def end_of(cut: Cut, line: TileLine, y: float, which: int, low: float, high: float) -> float:
     """Return the ξ at which one of the margins at one y changes its sign (Illinois)."""
     set_line(cut, low, line)
     at_low = margins(cut, low, line, y)[which]
@@ -204,7 +204,7 @@ def end_of(cut: Cut, line: Line, y: float, which: int, low: float, high: float) 
 
 
 @register_jitable(forceinline=True)
-def turns(left: float, middle: float, right: float) -> bool:
+def turns_back(left: float, middle: float, right: float) -> bool:
     """Return whether three margins of one sign come nearest to zero in the middle."""
     if middle > 0:
         return left > 0 and right > 0 and min(left, right) >= middle and left + right > 2 * middle
@@ -212,7 +212,7 @@ def turns(left: float, middle: float, right: float) -> bool:
 
 
 @register_jitable
-def _sample(cut: Cut, xi: float, line: Line) -> int:
+def _sample(cut: Cut, xi: float, line: TileLine) -> int:
     """List places along a line, and the margins there, that show each change of sign."""
     y_min, y_max = math.sqrt(cut.tile.v_min), math.sqrt(cut.tile.v_max)
     step = (y_max - y_min) / _SAMPLES
@@ -221,7 +221,7 @@ def _sample(cut: Cut, xi: float, line: Line) -> int:
     for i in range(_SAMPLES + 1):
         y = y_min + i * step
         right = margin(cut, xi, line, y)
-        if i >= 2 and turns(left, middle, right):
+        if i >= 2 and turns_back(left, middle, right):
             # it turns before it reaches zero, as far as three places tell: look closer
             offset = 0.5 * (left - right) / (left - 2 * middle + right)
             turn = y - step + offset * step
@@ -238,7 +238,7 @@ def _sample(cut: Cut, xi: float, line: Line) -> int:
 
 
 @register_jitable
-def cross(cut: Cut, xi: float, line: Line) -> int:
+def cross(cut: Cut, xi: float, line: TileLine) -> int:
     """List where the line at ξ enters and leaves the patch, in pairs; return how many."""
     set_line(cut, xi, line)
     num, found = _sample(cut, xi, line), 0
@@ -256,7 +256,7 @@ def cross(cut: Cut, xi: float, line: Line) -> int:
 
 
 @register_jitable
-def kind_of(cut: Cut, xi: float, line: Line) -> tuple[int, bool, bool]:
+def crossing_kind(cut: Cut, xi: float, line: TileLine) -> tuple[int, bool, bool]:
     """Return how a line crosses the patch: how often, and whether at its ends."""
     set_line(cut, xi, line)
     num = _sample(cut, xi, line)

@@ -12,14 +12,14 @@ from octsim.schemes.paths.aperture_tiles import across
 from octsim.schemes.paths.chebyshev import HIGHEST
 from octsim.schemes.paths.line_crossings import (
     Cut,
-    Line,
+    TileLine,
     cross,
+    crossing_kind,
     end_of,
     falloffs,
-    kind_of,
     margins,
     set_line,
-    turns,
+    turns_back,
 )
 
 _LINES = 24  # through a tile, to see where the way that they cross the patch changes
@@ -79,7 +79,7 @@ def _kronrod(gauss: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[n
 
 
 @register_jitable
-def _edges(cut: Cut, line: Line, breaks: NDArray[np.float64], num: int) -> int:
+def _edges(cut: Cut, line: TileLine, breaks: NDArray[np.float64], num: int) -> int:
     """Add the ξ at which a margin at the lower or upper edge of a tile changes its sign."""
     xi_min, xi_max = across(cut.tile.s_min, cut.symmetric), across(cut.tile.s_max, cut.symmetric)
     step = (xi_max - xi_min) / _LINES
@@ -98,7 +98,7 @@ def _edges(cut: Cut, line: Line, breaks: NDArray[np.float64], num: int) -> int:
 
 @register_jitable
 def _changes(
-    cut: Cut, line: Line, y: float, which: int, values: NDArray[np.float64],
+    cut: Cut, line: TileLine, y: float, which: int, values: NDArray[np.float64],
     breaks: NDArray[np.float64], num: int,
 ) -> int:  # fmt: skip
     """Add the ξ at which one margin changes its sign, from its values at even steps."""
@@ -109,7 +109,7 @@ def _changes(
         if (values[i] > 0) != (values[i - 1] > 0):
             breaks[num] = end_of(cut, line, y, which, xi - step, xi)
             num += 1
-        elif i >= 2 and turns(values[i - 2], values[i - 1], values[i]):
+        elif i >= 2 and turns_back(values[i - 2], values[i - 1], values[i]):
             # it turns before it reaches zero, as far as three places tell: look closer
             left, middle, right = values[i - 2], values[i - 1], values[i]
             turn = xi - step + 0.5 * step * (left - right) / (left - 2 * middle + right)
@@ -122,7 +122,7 @@ def _changes(
 
 
 @register_jitable
-def _breaks(cut: Cut, line: Line, breaks: NDArray[np.float64]) -> int:
+def _breaks(cut: Cut, line: TileLine, breaks: NDArray[np.float64]) -> int:
     """List the ξ at which the way that lines cross the patch changes, both ends included."""
     xi_min, xi_max = across(cut.tile.s_min, cut.symmetric), across(cut.tile.s_max, cut.symmetric)
     breaks[0], breaks[1] = xi_min, xi_max
@@ -133,15 +133,15 @@ def _breaks(cut: Cut, line: Line, breaks: NDArray[np.float64]) -> int:
     for i in range(1, known):
         width = (breaks[i] - breaks[i - 1]) / _BETWEEN
         low = breaks[i - 1] + 1e-9 * width
-        before = kind_of(cut, low, line)
+        before = crossing_kind(cut, low, line)
         for part in range(1, _BETWEEN + 1):
             high = breaks[i - 1] + width * (part - 1e-9)
-            after = kind_of(cut, high, line)
+            after = crossing_kind(cut, high, line)
             if after != before and num < breaks.size:
                 inner, outer = low, high
                 for _ in range(40):
                     half = 0.5 * (inner + outer)
-                    if kind_of(cut, half, line) == before:
+                    if crossing_kind(cut, half, line) == before:
                         inner = half
                     else:
                         outer = half
@@ -153,7 +153,7 @@ def _breaks(cut: Cut, line: Line, breaks: NDArray[np.float64]) -> int:
 
 
 @register_jitable
-def _along(cut: Cut, xi: float, rules: Rules, line: Line) -> None:
+def _along(cut: Cut, xi: float, rules: Rules, line: TileLine) -> None:
     """Integrate the falloff times each polynomial in v along a line."""
     m = cut.m
     q = m + 3
@@ -178,7 +178,7 @@ def moments(
     cut: Cut,
     tolerance: float,
     rules: Rules,
-    line: Line,
+    line: TileLine,
     exact: NDArray[np.float64],
     rough: NDArray[np.float64],
 ) -> float:
@@ -220,7 +220,7 @@ def moments(
     total = 0.0
     for i in range(num - 1):
         low, high = breaks[i], breaks[i + 1]
-        if high - low <= 1e-12 or kind_of(cut, 0.5 * (low + high), line) == (0, False, False):
+        if high - low <= 1e-12 or crossing_kind(cut, 0.5 * (low + high), line) == (0, False, False):
             continue
         # from the axis of symmetry on, half of the arc will do
         folded = low == 0 and cut.symmetric

@@ -39,7 +39,7 @@ MIXED = 4
 _RATE_S, _RATE_V = 1.2, 2.5
 
 
-class Errors(NamedTuple):
+class TileErrors(NamedTuple):
     """Error estimate of a fitted tile: along s, along v, and in all."""
 
     along_s: float
@@ -68,7 +68,7 @@ def typical_orders(ratio: float) -> tuple[int, int]:
 
 @register_jitable
 def raise_orders(
-    work: OpenTile, smaller: Tile, errors: Errors, tolerance: float
+    work: OpenTile, smaller: Tile, errors: TileErrors, tolerance: float
 ) -> tuple[int, int]:
     """Return how many nodes a tile's shrunk part needs along each axis for an error in tolerance.
 
@@ -130,7 +130,7 @@ def _look(
 
 @register_jitable
 def _refine(
-    point: Point, work: OpenTile, rest: OpenTile, empty: bool, errors: Errors, tolerance: float,
+    point: Point, work: OpenTile, rest: OpenTile, empty: bool, errors: TileErrors, tolerance: float,
     space: Workspace,
 ) -> None:  # fmt: skip
     """Have what is left of a fitted tile wait: as it is, with more nodes, or in halves.
@@ -191,7 +191,7 @@ def _fit(
     if end or (total == 0 and rim <= 0.25 * spare(goal, progress)):
         return rays, left_out(progress, rim)
     _refine(
-        point, work, rest, total == 0, Errors(error_s, error_v, error),
+        point, work, rest, total == 0, TileErrors(error_s, error_v, error),
         max(tolerance, relative * typical), space,
     )  # fmt: skip
     return rays, progress

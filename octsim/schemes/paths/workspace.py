@@ -10,7 +10,7 @@ from octsim.optics.beam import Beam
 from octsim.optics.detector import Detector
 from octsim.schemes.paths.aperture_tiles import Tile
 from octsim.schemes.paths.chebyshev import HIGHEST
-from octsim.schemes.paths.line_crossings import Line, Map, room_for_line
+from octsim.schemes.paths.line_crossings import Map, TileLine, room_for_line
 from octsim.schemes.paths.patch_by_fit import Search, room_for_search
 from octsim.schemes.paths.patch_integrals import Rules
 from octsim.schemes.paths.waiting_tiles import WaitingTiles, room_for_waiting
@@ -70,7 +70,7 @@ class Workspace(NamedTuple):
     beam: Beam
     bundle: Bundle
     rays: FollowRoom
-    line: Line
+    line: TileLine
     search: Search
     returns: Map
     exact: NDArray[np.float64]

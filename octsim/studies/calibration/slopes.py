@@ -110,7 +110,7 @@ def bench_of(
     )
 
 
-def look(instrument: Instrument, diameters: Array, foci: Array) -> Spectra:
+def observed(instrument: Instrument, diameters: Array, foci: Array) -> Spectra:
     """Return the spectra of diameters, (S,), with a focus each, (S,), both µm."""
     places = zip(diameters.tolist(), foci.tolist(), strict=True)
     intensity, error, status = zip(*(instrument.spectrum(*at) for at in places), strict=True)
@@ -133,11 +133,11 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
 
     def pair(placed: Placed) -> Spectra:
         diameters: Array = diameter + placed.diameter + sides
-        return look(placed.instrument, diameters, np.full(sides.size, focus + placed.focus))
+        return observed(placed.instrument, diameters, np.full(sides.size, focus + placed.focus))
 
-    fixed = look(own, diameter + offsets, held)
-    following = look(own, diameter + offsets, focus + bench.law_slope * offsets)
-    focused = look(own, at_rest, focus + offsets)
+    fixed = observed(own, diameter + offsets, held)
+    following = observed(own, diameter + offsets, focus + bench.law_slope * offsets)
+    focused = observed(own, at_rest, focus + offsets)
     bent = [pair(placed) for placed in bench.bent.placed]
     varied = {name: [pair(placed) for placed in one.placed] for name, one in bench.varied.items()}
     accurate = [fixed, following, focused, *bent, *chain.from_iterable(varied.values())]

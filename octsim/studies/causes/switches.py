@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.config.processing import Processing
-from octsim.phase.derivatives import advance
+from octsim.phase.derivatives import phase_advance
 from octsim.phase.transform import centred_by, windowed
 from octsim.studies.causes.beat import Parts
 
@@ -131,7 +131,7 @@ def slopes(stencil: Stencil, present: Causes, reading: Reading) -> Array:
     """
     spectra = [signal(p, present, reading.processing) for p in stencil[:3]]
     below, at, above = _components(spectra, present, reading)
-    return (advance(below, at) + advance(at, above)) / stencil.width
+    return (phase_advance(below, at) + phase_advance(at, above)) / stencil.width
 
 
 def every_slope(choose: Callable[[Causes], Stencil], reading: Reading) -> dict[Causes, Array]:

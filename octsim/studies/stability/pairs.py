@@ -87,7 +87,7 @@ class Pair(NamedTuple):
     path: float
 
 
-class Condition(NamedTuple):
+class ConditionNumbers(NamedTuple):
     """Condition numbers Σ|x ∂/∂x| of a light path, over all inputs x."""
 
     phase: float
@@ -103,9 +103,9 @@ class Conditions:
 
     def __init__(self, case: Case) -> None:
         self._case = case
-        self._known: dict[Key, Condition] = {}
+        self._known: dict[Key, ConditionNumbers] = {}
 
-    def of(self, key: Key) -> Condition:
+    def of(self, key: Key) -> ConditionNumbers:
         """Return the condition numbers of a path."""
         if key not in self._known:
             given = self._case.inputs(key[0])
@@ -120,7 +120,7 @@ class Conditions:
                     margins[i] += scale * abs(two - one)
             is_light = abs(end.amplitude) > NOTHING
             relative = amplitude / abs(end.amplitude) if is_light else amplitude
-            self._known[key] = Condition(
+            self._known[key] = ConditionNumbers(
                 float(path) * self._case.k_max, float(relative), tuple(map(float, margins))
             )
         return self._known[key]

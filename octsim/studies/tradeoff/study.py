@@ -55,7 +55,7 @@ def intensity_errors(intensity: Array, exact: Array) -> Array:
     return errors
 
 
-def sweep_slopes(config: Config, intensity: Array) -> Array:
+def strongest_slopes(config: Config, intensity: Array) -> Array:
     """Return the phase slope of the strongest component (D,), mrad/nm, of spectra (D, K)."""
     components = fourier_components(intensity, config.processing)
     diameters = config.sweep.diameters.values()
@@ -93,7 +93,7 @@ class ReferenceSweep:
         if setting.factor == "sweep.diameters.num":
             finest = FINER * (self._config.sweep.diameters.num - 1)
             steps, num = finest // (num - 1), finest + 1
-        converged = sweep_slopes(self._sampled(num, samples), self.spectra(num, samples))
+        converged = strongest_slopes(self._sampled(num, samples), self.spectra(num, samples))
         return converged[::steps]
 
     def _sampled(self, num: int, samples: int) -> Config:
@@ -183,7 +183,7 @@ def _errors(setting: Setting, intensity: Array, exact: ReferenceSweep) -> Errors
     errors = Errors(float(off.max()), float(np.median(off)), int((off > asked).sum()))
     if setting.every > 1:
         return errors
-    slope_off = sweep_slopes(config, intensity) - exact.slopes(setting)
+    slope_off = strongest_slopes(config, intensity) - exact.slopes(setting)
     return errors._replace(
         phase_slope_rms_error=float(np.sqrt(np.mean(slope_off**2))),
         phase_slope_largest_error=float(np.abs(slope_off).max()),
