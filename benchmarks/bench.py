@@ -22,6 +22,7 @@ from trees import NoCompilerError, scalar_tree, simd_tree
 
 import octsim
 from octsim.base.threads import each
+from octsim.datasets.catalog import STAGES
 from octsim.datasets.files import write
 from octsim.instrument.build import detector_of, scene_of
 from octsim.instrument.instrument import Instrument
@@ -145,7 +146,7 @@ def pipeline(rounds: int = 3) -> dict[str, float]:
     """Measure the whole pipeline: medians of a few runs of the default config, in seconds."""
     python = sys.executable
     snakemake = [python, "-m", "snakemake", "--cores", "2"]
-    stages = ", ".join(f"octsim.stages.{name}" for name in ("focus", "law", "sweep", "phase_slope"))
+    stages = ", ".join(f"octsim.stages.{name}" for name in STAGES)
     modules = f"{stages}, octsim.figures, octsim.config.load"
     taken: dict[str, list[float]] = {}
     with tempfile.TemporaryDirectory() as temporary:
