@@ -26,6 +26,7 @@ SOCKET = "OCTSIM_JOB_SERVER"
 _LOOK = 1.0  # s, between looks at whether the parent is still there
 _STREAMS = (1, 2)
 _HEAD = 16  # bytes, with the length of the task that follows
+_BEGUN = b"!"
 _LOADED = (
     "matplotlib.backends.backend_agg", "scipy.optimize", "scipy.signal", "octsim.archive.pack",
     "octsim.figures.draw", "octsim.instrument.point_store", "octsim.stages.job",
@@ -49,16 +50,19 @@ def start() -> tempfile.TemporaryDirectory[str]:
 
 
 def ask(task: Mapping[str, Any]) -> int | None:
-    """Have a task done by the server; return its exit status, or None if there is no server."""
+    """Have a task done by the server; return its exit status, or None if no server has begun it."""
     with socket.socket(socket.AF_UNIX) as connection:
         try:
             connection.connect(os.environ.get(SOCKET, ""))
+            whole = {**task, "folder_of_the_process": str(Path.cwd())}
+            text = json.dumps(whole, default=str).encode()  # YAML reads a day as one
+            socket.send_fds(connection, [f"{len(text):{_HEAD}}".encode()], _STREAMS)
+            connection.sendall(text)
+            begun = connection.recv(1)
         except OSError:
+            begun = b""
+        if not begun:
             return None
-        whole = {**task, "folder_of_the_process": str(Path.cwd())}
-        text = json.dumps(whole, default=str).encode()  # YAML reads a day as one
-        socket.send_fds(connection, [f"{len(text):{_HEAD}}".encode()], _STREAMS)
-        connection.sendall(text)
         status = connection.recv(1)
     if not status:
         print("octsim: the job was killed; is there memory enough for it?", file=sys.stderr)
@@ -88,7 +92,7 @@ def _load() -> None:
 
     of_stages = (row.make.partition(":")[0] for row in CATALOG.values() if not row.beside)
     for module in (*_LOADED, *of_stages):
-        with contextlib.suppress(ImportError):
+        with contextlib.suppress(Exception):
             __import__(module)
     named("octsim.base.provenance:environment")()
 
@@ -105,11 +109,14 @@ def _do(connection: socket.socket) -> None:
             os.close(given)
         with connection.makefile("rb") as stream:
             task = json.loads(stream.read(int(head)))
+        connection.sendall(_BEGUN)
         os.chdir(task.pop("folder_of_the_process"))
         threading.Thread(target=_end_with, args=(connection,), daemon=True).start()
         from octsim.cli.job import Task, do
 
         status = do(Task(**task))
+    except KeyboardInterrupt:
+        status = 128 + signal.SIGINT
     except BaseException:
         traceback.print_exc()
     finally:
