@@ -27,10 +27,17 @@ time.sleep(600)
 
 def task(folder: Path) -> dict[str, object]:
     return {
-        "name": "focus_law", "folder": str(folder / "results" / "tiny"), "config": {"run": "tiny"},
-        "input": {"focus_sweep": str(folder / "focus_sweep.nc")}, "output": {"only": "law.nc"}, "shares": [], "log": str(folder / "logs" / "job.log"),
-        "threads": 1, "share": [1, 1], "figures": False,
-    }  # fmt: skip
+        "name": "focus_law",
+        "folder": str(folder / "results" / "tiny"),
+        "config": {"run": "tiny"},
+        "input": {"focus_sweep": str(folder / "focus_sweep.nc")},
+        "output": {"only": "law.nc"},
+        "shares": [],
+        "log": str(folder / "logs" / "job.log"),
+        "threads": 1,
+        "share": [1, 1],
+        "figures": False,
+    }
 
 
 def asked(what: dict[str, object], **environment: str) -> subprocess.CompletedProcess[str]:
