@@ -152,7 +152,7 @@ onsuccess:
     for stage in jobs(beside=False):
         found = Path(f"{FOLDER}/logs/{stage}.log")
         lines = found.read_text().splitlines() if found.is_file() else []  # asked for less
-        told = [line for line in lines if line.startswith(("octsim: ", "phase slope", "mean "))]
+        told = [line for line in lines if line.startswith("octsim: ")]
         print(*told, sep="\n", end="\n" if told else "", file=sys.stderr)
     print(f"octsim: datasets and figures are in {FOLDER}/", file=sys.stderr)
     wanted = [Path(file).name for stage in SHARES for file in shares(stage)]

@@ -198,10 +198,10 @@ STABILITY_TEMPLATE = """# Rounding at the extremes
 
 Written by `make docs` from `results/thesis/stability.nc`; do not edit. `make docs` runs
 `snakemake stability`, about two minutes on two cores, which traces up to 100 rays a cell with 50
-digits (`benchmarks/exact.py`, on mpmath) beside octsim's doubles. A cell is one factor changed in
-one of five configs: the default; one with no gap, the focus on the glass and NA 1.5; a neuron of
-index 3.33; one 1 nm thick; one 1 mm thick below an objective 1 m away. *Wide* ones have a detector
-that sees all that returns.
+digits (`octsim/studies/stability/exact.py`, on mpmath) beside octsim's doubles. A cell is one
+factor changed in one of five configs: the default; one with no gap, the focus on the glass and NA
+1.5; a neuron of index 3.33; one 1 nm thick; one 1 mm thick below an objective 1 m away. *Wide* ones
+have a detector that sees all that returns.
 
 Inputs are the doubles of the config and of the rays' positions on the objective. The bound is
 max(1e-9, 8 ε κ), in rad of phase at the largest wavenumber and relative for amplitudes; the

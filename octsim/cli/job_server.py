@@ -1,6 +1,6 @@
 """Jobs as forks of one process that has the libraries: importing them takes longer than most jobs.
 
-    python -m octsim.cli.job_server DESCRIPTOR
+    python -m octsim.cli.job_server DESCRIPTOR PARENT
 
 Each connection to the socket brings a task, and the standard streams of who asks; a fork does it
 and sends back its exit status. The server ends with the process that has started it. Where there is
@@ -33,15 +33,23 @@ _LOADED = (
 )  # fmt: skip
 
 
-def start() -> tempfile.TemporaryDirectory[str]:
-    """Start a server, and return the folder of its socket, which the caller has to keep."""
+def start() -> "tempfile.TemporaryDirectory[str] | None":
+    """Start a server, and return the folder of its socket, which the caller has to keep.
+
+    None where there can be none, as the folder of temporary files has too long a name for a socket.
+    """
     folder = tempfile.TemporaryDirectory(prefix="octsim-", ignore_cleanup_errors=True)
     path = f"{folder.name}/jobs"
     with socket.socket(socket.AF_UNIX) as listener:
-        listener.bind(path)
+        try:
+            listener.bind(path)
+        except OSError:
+            return None
         listener.listen(64)  # from now on who asks is heard
+        # -P, as what stands in the folder of the run is no library
+        command = [sys.executable, "-P", "-m", "octsim.cli.job_server"]
         subprocess.Popen(
-            [sys.executable, "-m", "octsim.cli.job_server", str(listener.fileno())],
+            [*command, str(listener.fileno()), str(os.getpid())],
             pass_fds=[listener.fileno()], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )  # fmt: skip
@@ -51,6 +59,7 @@ def start() -> tempfile.TemporaryDirectory[str]:
 
 def ask(task: Mapping[str, Any]) -> int | None:
     """Have a task done by the server; return its exit status, or None if no server has begun it."""
+    status = b""
     with socket.socket(socket.AF_UNIX) as connection:
         try:
             connection.connect(os.environ.get(SOCKET, ""))
@@ -63,15 +72,15 @@ def ask(task: Mapping[str, Any]) -> int | None:
             begun = b""
         if not begun:
             return None
-        status = connection.recv(1)
+        with contextlib.suppress(OSError):
+            status = connection.recv(1)
     if not status:
         print("octsim: the job was killed; is there memory enough for it?", file=sys.stderr)
     return status[0] if status else 1
 
 
-def serve(listener: socket.socket) -> None:
+def serve(listener: socket.socket, parent: int) -> None:
     """Fork a process for each task, until the parent is gone."""
-    parent = os.getppid()
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the forks
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent has it, and says what is to be done
     listener.settimeout(_LOOK)
@@ -79,10 +88,10 @@ def serve(listener: socket.socket) -> None:
     while os.getppid() == parent:
         with contextlib.suppress(TimeoutError):
             connection, _ = listener.accept()
-            if os.fork() == 0:
-                listener.close()
-                _do(connection)
-            connection.close()
+            with connection, contextlib.suppress(OSError):  # no more processes: not begun
+                if os.fork() == 0:
+                    listener.close()
+                    _do(connection)
 
 
 def _load() -> None:
@@ -120,8 +129,9 @@ def _do(connection: socket.socket) -> None:
     except BaseException:
         traceback.print_exc()
     finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
+        for said in (sys.stdout, sys.stderr):
+            with contextlib.suppress(OSError):
+                said.flush()
         with contextlib.suppress(OSError):
             connection.sendall(bytes([status]))
         os._exit(status)
@@ -136,4 +146,4 @@ def _end_with(connection: socket.socket) -> None:
 
 if __name__ == "__main__":
     with socket.socket(fileno=int(sys.argv[1])) as given:
-        serve(given)
+        serve(given, int(sys.argv[2]))

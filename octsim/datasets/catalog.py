@@ -80,6 +80,11 @@ class Stage:
         return self.points is not None
 
     @property
+    def needs_light(self) -> bool:
+        """Whether it looks for light itself."""
+        return self.traces or any(key.startswith((LIGHT, "tracing")) for key in self.reads)
+
+    @property
     def module(self) -> str:
         """Module that makes it."""
         return self.make.partition(":")[0]

@@ -7,15 +7,20 @@ from octsim.config.grid import combinations
 from octsim.config.models import Config
 from octsim.config.scheme import scheme_of
 from octsim.datasets.catalog import CATALOG, LIGHT, SUMMING, Figure
-from octsim.schemes.table import COUNTED_RAYS, SCHEMES
+from octsim.schemes.table import COUNTED_RAYS, LIGHT_PATHS, SCHEMES
 
-NO_RESULT = ("octsim.config.archive", "octsim.instrument.points", "octsim.instrument.point_store")
+NO_RESULT = (
+    "octsim.config.archive", "octsim.datasets.catalog", "octsim.datasets.gallery",
+    "octsim.instrument.point_store", "octsim.instrument.points", "octsim.schemes.cost",
+    "octsim.schemes.table",
+)  # fmt: skip
 """Modules that no number follows from, though what makes datasets imports them."""
 
 
 def code_of(stage: str, config: Config) -> str:
     """Digest the sources that make a dataset: its own module's, and those of its schemes."""
-    return source_digest(CATALOG[stage].module, *_schemes(stage, config), without=NO_RESULT)
+    made_by = CATALOG[stage].module, "octsim.datasets.writer", *_schemes(stage, config)
+    return source_digest(*made_by, without=NO_RESULT)
 
 
 def figures_code(*figures: Figure) -> str:
@@ -27,10 +32,18 @@ def figures_code(*figures: Figure) -> str:
 def _schemes(stage: str, config: Config) -> Iterator[str]:
     """Return the modules of the schemes that a dataset's numbers are found by."""
     row = CATALOG[stage]
-    if row.beside:
+    if row.beside and row.needs_light:
         yield from (scheme.module for scheme in SCHEMES.values())
+    elif "processing" in row.reads and _compares_with_a_model(config):
+        yield LIGHT_PATHS.module
     elif {LIGHT, SUMMING} & set(row.reads):
         for at in combinations(config, "tracing.scheme", "tracing.preset"):
             yield scheme_of(at.config).module
         if set(COUNTED_RAYS.keys) <= set(row.reads):
             yield COUNTED_RAYS.module
+
+
+def _compares_with_a_model(config: Config) -> bool:
+    """Return whether an estimator of some combination looks at modelled spectra."""
+    every = combinations(config, "processing.estimator")
+    return any(at.config.processing.estimator == "maximum_likelihood" for at in every)

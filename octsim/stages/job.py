@@ -67,7 +67,7 @@ def perform(job: Job, config: Config) -> dict[str, int]:
 @contextmanager
 def _points(job: Job, config: Config) -> Iterator["Points | None"]:
     """Open the point cache for a job that traces."""
-    if job.shares or not any(row.traces or row.beside for row in job.rows):
+    if job.shares or not any(row.needs_light for row in job.rows):
         yield None  # nor is numba imported
         return
     from octsim.instrument.point_store import open_store
@@ -122,4 +122,4 @@ def _tell(row: Stage, file: Path, config: Config) -> None:
         for doubt in named(row.doubts)(dataset) if row.doubts else ():
             logging.warning("octsim: warning: %s", doubt)
         if row.summary:
-            logging.info("%s", named(row.summary)(dataset))
+            logging.info("octsim: %s", named(row.summary)(dataset))

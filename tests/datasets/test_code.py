@@ -10,7 +10,10 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-KERNELS = ("octsim.tracing.tree", "octsim.schemes.field_sum", "octsim.schemes.paths.integrate")
+KERNELS = (
+    "octsim.tracing.kernel", "octsim.schemes.field_sum", "octsim.schemes.paths.integrate",
+    "octsim.schemes.paths.path_sum",
+)  # fmt: skip
 DIGESTS = f"""
 import json
 from octsim.base.provenance import source_digest
@@ -21,6 +24,8 @@ found = {{name: source_digest(name) for name in {KERNELS}}}
 for scheme in ("vogel", "paths"):
     config = load_config({{"tracing": {{"scheme": scheme}}}})
     found |= {{f"{{scheme}} {{stage}}": code_of(stage, config) for stage in CATALOG}}
+config = load_config({{"processing": {{"estimator": "maximum_likelihood"}}}})
+found |= {{f"model {{stage}}": code_of(stage, config) for stage in CATALOG}}
 print(json.dumps(found))
 """
 
@@ -58,6 +63,7 @@ def changed(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., set[str]]
         "config/archive.py", "cli/main.py", "cli/cache.py", "archive/pack.py", "archive/compare.py",
         "figures/style.py", "figures/phase_slope.py", "instrument/points.py",
         "instrument/point_store.py", "stages/progress.py", "stages/cost_estimate.py",
+        "datasets/catalog.py", "datasets/gallery.py", "schemes/table.py", "schemes/cost.py",
     ],
 )  # fmt: skip
 def test_what_no_number_follows_from_retraces_and_compiles_nothing(
@@ -71,20 +77,28 @@ def test_an_edit_of_the_scheme_paths_touches_no_run_by_counted_rays(
     changed: Callable[..., set[str]], name: str
 ) -> None:
     found = changed(name)
-    beside = {"stability", "tradeoff", "causes", "estimators", "calibration", "expansion"}
-    beside.add("action_potential")
+    beside = {"stability", "tradeoff", "causes", "estimators", "calibration", "action_potential"}
     assert {one for one in found if one.startswith("vogel")} == {f"vogel {n}" for n in beside}
     assert {"paths detections", "paths focus_sweep", "paths focus_scan", "paths spectra"} <= found
-    assert not {"octsim.tracing.tree", "octsim.schemes.field_sum"} & found
+    assert not {"octsim.tracing.kernel", "octsim.schemes.field_sum"} & found
+    # whose estimator compares with spectra by light paths
+    run = {one for one in found if one.startswith("model")} - {f"model {n}" for n in beside}
+    assert run == {"model fourier", "model phase_slope"}
 
 
 def test_an_edit_of_a_stage_touches_that_stage_alone(changed: Callable[..., set[str]]) -> None:
     assert changed("stages/gaussian_fits.py") == {
         f"{scheme} {stage}"
-        for scheme in ("vogel", "paths")
+        for scheme in ("vogel", "paths", "model")
         # the law reads how the fits ended, and who follows the law reads the law
         for stage in (
             "gaussian_fits", "focus_law", "detections", "spectra", "paths", "causes",
             "estimators", "calibration", "action_potential", "tradeoff",
         )
     }  # fmt: skip
+
+
+def test_an_edit_of_what_writes_files_makes_all_anew(changed: Callable[..., set[str]]) -> None:
+    found = changed("datasets/writer.py")
+    assert {"vogel focus_scan", "vogel phase_slope", "paths spectra", "vogel calibration"} <= found
+    assert not set(KERNELS) & found
