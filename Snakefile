@@ -55,6 +55,7 @@ elif not is_latest(Path(f"results/{run.run}")):
 else:
     # of the machine that sent this job to a cluster
     os.environ.pop(SOCKET, None)
+PLANNED = set()  # the rules of the jobs that are to be done
 SERVER = []  # that jobs on this machine are forks of; it ends with this process
 # not workflow.cores, which in a job on a cluster are all that its node has
 CORES = int(os.environ.get("OCTSIM_CORES", workflow.cores))
@@ -133,9 +134,9 @@ def needs(*stages: str) -> dict[str, Callable[[object, int], int]]:
 
 onstart:
     # what is to be made, which may be less than all, may take more than was confirmed
-    stages = {job.rule.name for job in workflow.persistence.dag.needrun_jobs()}
+    PLANNED.update(job.rule.name for job in workflow.persistence.dag.needrun_jobs())
     try:
-        check_budget(run, estimate.of(*stages), Path(FOLDER))
+        check_budget(run, estimate.of(*PLANNED), Path(FOLDER))
     except OctsimError as error:
         sys.exit(f"octsim: {error}")
     # one run of a name at a time; the lock goes with the process, however that ends
@@ -149,7 +150,7 @@ onstart:
 
 
 onsuccess:
-    for stage in jobs(beside=False):
+    for stage in [*jobs(beside=False), *sorted(PLANNED.intersection(jobs(beside=True)))]:
         found = Path(f"{FOLDER}/logs/{stage}.log")
         lines = found.read_text().splitlines() if found.is_file() else []  # asked for less
         told = [line for line in lines if line.startswith("octsim: ")]

@@ -37,11 +37,12 @@ def slurm() -> Iterator[Mapping[str, str]]:
 
 def at_start(checkout: Checkout, stage: str, statement: str) -> None:
     """Make a stage's job do something before its work."""
-    script = checkout.folder / "workflow" / "scripts" / f"{stage}.py"
-    lines = script.read_text().splitlines(keepends=True)
-    (job,) = (number for number, line in enumerate(lines) if line.startswith("with job("))
-    lines.insert(job + 1, f"    import time; from pathlib import Path; {statement}\n")
-    script.write_text("".join(lines))
+    script = checkout.folder / "workflow" / "scripts" / "job.py"
+    name = "snakemake.wildcards.get('stage', Path(snakemake.log[0]).stem)"
+    before, work = script.read_text().split("status = ask(task)")
+    script.write_text(
+        f"{before}if {name} == '{stage}':\n    import time; {statement}\nstatus = ask(task){work}"
+    )
 
 
 def the_first_time(name: str, statement: str) -> str:
@@ -152,7 +153,7 @@ def test_a_job_that_fails_each_time_keeps_the_old_dataset_and_a_rerun_resumes(
     checkout = Checkout(tmp_path)
     checkout.run(TINY, "--until", "focus_law")
     before = checkout.results()
-    script = tmp_path / "workflow" / "scripts" / "focus_law.py"
+    script = tmp_path / "workflow" / "scripts" / "job.py"
     plain = script.read_text()
     at_start(checkout, "focus_law", "raise SystemExit(1)")
     broken = start(checkout, slurm, *PROFILE, "--until", "focus_law", "--restart-times", "0")
