@@ -41,7 +41,8 @@ def at_start(checkout: Checkout, stage: str, statement: str) -> None:
     name = "snakemake.wildcards.get('stage', Path(snakemake.log[0]).stem)"
     before, work = script.read_text().split("status = ask(task)")
     script.write_text(
-        f"{before}if {name} == '{stage}':\n    import time; {statement}\nstatus = ask(task){work}"
+        f"{before}if {name} == '{stage}':\n    import time; from octsim.cli import job\n"
+        f"    job.end_with_the_run(Path(task['folder'])); {statement}\nstatus = ask(task){work}"
     )
 
 
@@ -156,7 +157,8 @@ def test_a_job_that_fails_each_time_keeps_the_old_dataset_and_a_rerun_resumes(
     script = tmp_path / "workflow" / "scripts" / "job.py"
     plain = script.read_text()
     at_start(checkout, "focus_law", "raise SystemExit(1)")
-    broken = start(checkout, slurm, *PROFILE, "--until", "focus_law", "--restart-times", "0")
+    again = ("--until", "focus_law", "--forcerun", "focus_law", "--restart-times", "0")
+    broken = start(checkout, slurm, *PROFILE, *again)
     said, _ = broken.communicate()
     assert broken.returncode != 0
     assert "SLURM status is: 'FAILED'" in said
