@@ -228,8 +228,8 @@ takes {kept:.1%} of the time that tracing it takes (3000 rays).
 | --- | --- |
 {steps}
 
-*Imports of one job* is a process that imports what all jobs need together and does nothing else: a
-run starts seven, so most of the time of all jobs is starting up.
+*Imports of one job* is a process that imports what all jobs need together and does nothing else.
+A run does that once: its jobs are forks of one such process.
 """
 
 
