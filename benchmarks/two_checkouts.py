@@ -20,7 +20,6 @@ from octsim.archive.compare import compare
 from octsim.archive.compare_text import lines
 from octsim.base.provenance import PACKAGE
 
-GIVEN = {"sweep": {"focus": {"slope": 0.58, "intercept": "66 nm"}}}
 PATHS = {"tracing": {"preset": "standard"}}
 SMALL: dict[str, Any] = {
     "tracing": {"rays": 300},

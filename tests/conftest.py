@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 import xarray as xr
 from hypothesis import settings
-from made_runs import WHOLE, every_stage
+from made_runs import SWEEP, WHOLE, every_stage
 
+import octsim
 from octsim.config.load import load_config
 from octsim.studies.calibration.study import calibration
 
@@ -38,6 +39,12 @@ def planned(tmp_path: Path) -> Callable[..., str]:
 def stages() -> dict[str, xr.Dataset]:
     """Make every dataset of a small run, once: no test changes them in place."""
     return every_stage(load_config(WHOLE), 2)
+
+
+@pytest.fixture(scope="session")
+def spectra() -> xr.Dataset:
+    """Make the spectra of an accurate sweep, once: no test changes them in place."""
+    return octsim.spectra(SWEEP, octsim.detections(SWEEP))
 
 
 @pytest.fixture(scope="session")

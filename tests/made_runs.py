@@ -22,6 +22,16 @@ WHOLE = {
     "sweep": {"diameters": {"num": 9}},
 }
 """The config of the fixture `stages`."""
+SWEEP = octsim.load_config(
+    {
+        "tracing": {"scheme": "paths", "accuracy": 1e-6},
+        "sweep": {
+            "diameters": {"start": "1.2 um", "stop": "1.6 um", "num": 61},
+            "focus": {"slope": 0.58, "intercept": "64 nm"},
+        },
+    }
+)
+"""The config of the fixture `spectra`."""
 
 
 def make(folder: Path, *overlays: dict[str, object], scan: bool = True) -> octsim.Config:

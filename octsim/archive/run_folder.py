@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from octsim.base.errors import DatasetError
 from octsim.config.models import Config
-from octsim.datasets.catalog import STAGES, TARGETS
+from octsim.datasets.catalog import CATALOG
 from octsim.datasets.files import opened
 from octsim.datasets.keys import differing
 from octsim.datasets.versions import recorded_config
@@ -39,7 +39,7 @@ def run_in(folder: Path) -> Run:
     DatasetError
         If the folder has no datasets, one of them can't be read, or they are of different configs.
     """
-    known = {stage: folder / f"{stage}.nc" for stage in sorted((*STAGES, *TARGETS))}
+    known = {stage: folder / f"{stage}.nc" for stage in sorted(CATALOG)}
     datasets = {stage: file for stage, file in known.items() if file.is_file()}
     if not datasets:
         raise DatasetError(f"{folder}: no datasets; give a folder as results/thesis")

@@ -21,6 +21,11 @@ SPACE = 32_000_000
 _FULL = 1_000_000
 
 
+def standing(path: Path) -> Path:
+    """Return what is there of a path: itself, or the nearest folder above it."""
+    return next(place for place in (path, *path.absolute().parents) if place.exists())
+
+
 def require_folder(path: Path) -> None:
     """Check that a folder is there, or can be made, can be written in, and has room.
 
@@ -29,7 +34,7 @@ def require_folder(path: Path) -> None:
     FileError
         If it can't; nothing is made.
     """
-    there = next(place for place in (path, *path.absolute().parents) if place.exists())
+    there = standing(path)
     if not there.is_dir():
         raise FileError(f"{path}: can't be a folder, as {there.name} is a file; move that away")
     if not os.access(there, os.W_OK | os.X_OK):

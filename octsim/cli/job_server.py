@@ -99,7 +99,7 @@ def _load() -> None:
     from octsim.base.named import named
     from octsim.datasets.catalog import CATALOG
 
-    of_stages = (row.make.partition(":")[0] for row in CATALOG.values() if not row.beside)
+    of_stages = (row.module for row in CATALOG.values() if not row.beside)
     for module in (*_LOADED, *of_stages):
         with contextlib.suppress(Exception):
             __import__(module)

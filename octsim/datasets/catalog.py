@@ -21,6 +21,9 @@ SUMMING = "(summing)"
 """Stands for the keys of the scheme that a sum over the wavenumbers depends on."""
 
 
+_COUNTED = COUNTED_RAYS.keys
+
+
 @dataclass(frozen=True)
 class Figure:
     """A figure that is drawn from datasets."""
@@ -85,12 +88,16 @@ class Stage:
         return self.traces or any(key.startswith((LIGHT, "tracing")) for key in self.reads)
 
     @property
+    def counts_rays(self) -> bool:
+        """Whether it counts rays, whatever the run's scheme is."""
+        return set(_COUNTED) <= set(self.reads)
+
+    @property
     def module(self) -> str:
         """Module that makes it."""
         return self.make.partition(":")[0]
 
 
-_COUNTED = COUNTED_RAYS.keys  # figure 6 counts rays, whatever the scheme
 _COMPARED = ("scene", "objective", "detector", "tracing", "spectrum", "sweep", "processing")
 # of spectra as accurate as small steps need, whatever the run's scheme
 _CALIBRATED = (

@@ -39,7 +39,7 @@ def _schemes(stage: str, config: Config) -> Iterator[str]:
     elif {LIGHT, SUMMING} & set(row.reads):
         for at in combinations(config, "tracing.scheme", "tracing.preset"):
             yield scheme_of(at.config).module
-        if set(COUNTED_RAYS.keys) <= set(row.reads):
+        if row.counts_rays:
             yield COUNTED_RAYS.module
 
 

@@ -35,9 +35,8 @@ def _read(stage: str, config: Config) -> Iterator[str]:
 
 
 def _behind(stage: str, config: Config) -> Iterator[str]:
-    for before in CATALOG[stage].after if stage in CATALOG else ():
-        if before != "focus_law" or config.sweep.focus == "law":
-            yield from _behind(before, config)
+    for before in inputs_of(CATALOG[stage], config) if stage in CATALOG else ():
+        yield from _behind(before, config)
     yield from _read(stage, config)
 
 

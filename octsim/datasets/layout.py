@@ -1,6 +1,6 @@
 """What a stage's dataset looks like before its values are known: its axes and coordinates."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import Any
 
@@ -104,6 +104,10 @@ class Layout:
         """Length of each of the whole dataset's dimensions, but for ragged ones."""
         own = {self.dimension(name): max(sizes) for name, sizes in self._lengths.items()}
         return dict(zip(self.grid_dimensions, self.grid_shape, strict=True)) | own
+
+    def is_ragged(self, dimensions: Iterable[str]) -> bool:
+        """Return whether a variable along these has its parts one after the other, in no shape."""
+        return any(dimension not in self.sizes for dimension in dimensions)
 
     @property
     def coordinates(self) -> dict[str, xr.Variable]:

@@ -66,10 +66,10 @@ def pour(stream: Stream, sink: Sink) -> None:
     layout, known = stream.layout, set[str]()
     for part in stream.parts:
         for name, (own, values, *rest) in arrays(part.variables):
-            ragged = any(layout.dimension(d) not in layout.sizes for d in own)
+            named = tuple(map(layout.dimension, own))
+            ragged = layout.is_ragged(named)
             if name not in known:
                 known.add(name)
-                named = tuple(map(layout.dimension, own))
                 whole = named if ragged else (*layout.grid_dimensions, *named)
                 sink.create(name, whole, values.dtype, meaning(name) | (rest[0] if rest else {}))
             if ragged:
@@ -92,8 +92,8 @@ def arrays(variables: Mapping[str, Any]) -> Iterator[tuple[str, tuple[Any, ...]]
 class _Memory:
     """Arrays of a dataset in memory."""
 
-    def __init__(self, sizes: Mapping[str, int]) -> None:
-        self._sizes = sizes
+    def __init__(self, layout: Layout) -> None:
+        self._layout = layout
         self._named: dict[str, tuple[tuple[str, ...], Mapping[str, Any]]] = {}
         self._arrays: dict[str, NDArray[Any]] = {}
         self._ragged: dict[str, list[NDArray[Any]]] = {}
@@ -106,8 +106,8 @@ class _Memory:
         attributes: Mapping[str, Any],
     ) -> None:
         self._named[name] = dimensions, attributes
-        if all(d in self._sizes for d in dimensions):
-            shape = [self._sizes[d] for d in dimensions]
+        if not self._layout.is_ragged(dimensions):
+            shape = [self._layout.sizes[d] for d in dimensions]
             self._arrays[name] = np.full(shape, filling(dtype), dtype)
 
     def put(self, name: str, place: tuple[Any, ...], values: NDArray[Any]) -> None:
@@ -127,7 +127,7 @@ class _Memory:
 def in_memory(stream: Stream) -> xr.Dataset:
     """Put a stage's parts together in memory."""
     layout = stream.layout
-    memory = _Memory(layout.sizes)
+    memory = _Memory(layout)
     pour(stream, memory)
     described = attributes(layout.stage, layout.config, layout.title)
     return xr.Dataset(memory.variables(), layout.coordinates, described)

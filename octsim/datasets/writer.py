@@ -41,7 +41,7 @@ class _File:
         dtype: np.dtype[Any],
         attributes: Mapping[str, Any],
     ) -> None:
-        ragged = any(d not in self._layout.sizes for d in dimensions)
+        ragged = self._layout.is_ragged(dimensions)
         for dimension in dimensions:
             if dimension not in self._file.dimensions:
                 self._file.createDimension(dimension, None)

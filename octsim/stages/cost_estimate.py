@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from octsim.base.errors import ConfigError
+from octsim.base.files import standing
 from octsim.config.derive import counting_rays
 from octsim.config.grid import axes, combinations
 from octsim.config.models import Config
@@ -16,7 +17,6 @@ from octsim.datasets.catalog import CATALOG, Stage
 from octsim.datasets.keys import keys_behind
 from octsim.instrument.point_store import open_store
 from octsim.schemes.cost import PointCost
-from octsim.schemes.table import COUNTED_RAYS
 from octsim.stages.workload import point_cost
 
 _SUMMING = 1e-7  # s a sample, of summing a spectrum
@@ -108,8 +108,7 @@ def estimate(config: Config, measured: Callable[[str, PointCost], PointCost]) ->
     def cost_of(row: Stage, of: Config) -> Cost:
         if row.traces:
             cost = traced(of, row, sums=row.sums)
-            counts_too = set(COUNTED_RAYS.keys) <= set(row.reads)
-            if counts_too and not scheme_of(of).counts_rays:
+            if row.counts_rays and not scheme_of(of).counts_rays:
                 cost = cost.and_also(traced(counting_rays(of), row, sums=False))
             return cost
         values = of.sweep.diameters.num * of.spectrum.samples
@@ -177,9 +176,8 @@ def check_budget(config: Config, cost: Cost, folder: Path) -> None:
             f"budget.disk_gigabytes: {budget.disk_gigabytes:g} given, but this run's datasets take "
             f"about {disk:.3g}; raise it to confirm, or vary less"
         )
-    there = next(place for place in (folder, *folder.absolute().parents) if place.exists())
     held = sum(file.stat().st_size for file in folder.glob("*.nc")) / 1e9
-    free = shutil.disk_usage(there).free / 1e9 + held
+    free = shutil.disk_usage(standing(folder)).free / 1e9 + held
     if disk > free:
         problems.append(
             f"{folder}: {free:.3g} GB are free, but this run's datasets take about {disk:.3g}; "

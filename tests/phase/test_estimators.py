@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from made_runs import SWEEP
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.signal import czt
@@ -204,22 +205,6 @@ def test_the_sinusoid_reaches_the_bound_of_what_it_does_not_know() -> None:
     expected = np.sqrt((along**2 * (offset + amplitude * cos)).sum())
     assert equal.std() == pytest.approx(expected, rel=0.08)
     assert expected > 1.1 * bound
-
-
-SWEEP = octsim.load_config(
-    {
-        "tracing": {"scheme": "paths", "accuracy": 1e-6},
-        "sweep": {
-            "diameters": {"start": "1.2 um", "stop": "1.6 um", "num": 61},
-            "focus": {"slope": 0.58, "intercept": "64 nm"},
-        },
-    }
-)
-
-
-@pytest.fixture(scope="module")
-def spectra() -> xr.Dataset:
-    return octsim.spectra(SWEEP, octsim.detections(SWEEP))
 
 
 @pytest.mark.parametrize("estimator", sorted({*ESTIMATORS, "maximum_likelihood"} - {"fft"}))

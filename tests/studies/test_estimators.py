@@ -5,6 +5,7 @@ import time
 import numpy as np
 import pytest
 import xarray as xr
+from made_runs import SWEEP
 from numpy.typing import NDArray
 
 import octsim
@@ -29,22 +30,6 @@ K = Config().spectrum.wavenumbers()
 
 def processing(**given: object) -> Processing:
     return Processing.model_validate(given)
-
-
-SWEEP = octsim.load_config(
-    {
-        "tracing": {"scheme": "paths", "accuracy": 1e-6},
-        "sweep": {
-            "diameters": {"start": "1.2 um", "stop": "1.6 um", "num": 61},
-            "focus": {"slope": 0.58, "intercept": "64 nm"},
-        },
-    }
-)
-
-
-@pytest.fixture(scope="module")
-def spectra() -> xr.Dataset:
-    return octsim.spectra(SWEEP, octsim.detections(SWEEP))
 
 
 def test_slopes_of_a_sweep_are_those_of_the_light_s_own_phase(spectra: xr.Dataset) -> None:
