@@ -47,7 +47,13 @@ class Points:
         """
         store = self._store
         if store is None:
-            return lambda diameter, focus: self._counted(find(diameter, focus))
+
+            def found(diameter: float, focus: float) -> Light:
+                light = find(diameter, focus)
+                self._count()
+                return light
+
+            return found
         instrument = key()
 
         def at(diameter: float, focus: float) -> Light:
@@ -58,11 +64,12 @@ class Points:
                     self.from_cache += 1
                 return light_from_bytes(body)
             begin = time.thread_time()
-            light = self._counted(find(diameter, focus))
-            seconds = time.thread_time() - begin
+            light = find(diameter, focus)
+            seconds, number = time.thread_time() - begin, self._count()
             body = light_to_bytes(light)
             store.put(key, body)
-            self._time(rate, seconds, len(body))
+            if number > _NOT_TIMED:
+                self._time(rate, seconds, len(body))
             return light
 
         return at
@@ -81,15 +88,14 @@ class Points:
             for name, sums in timed.items():
                 self._store.record(name, Rate(*sums))
 
-    def _counted(self, light: Light) -> Light:
+    def _count(self) -> int:
+        """Count a point that was found anew, and return its number, which no other thread gets."""
         with self._lock:
             self.traced += 1
-        return light
+            return self.traced
 
     def _time(self, name: str, seconds: float, size: int) -> None:
         with self._lock:
-            if self.traced <= _NOT_TIMED:
-                return
             points, before, held = self._timed.get(name, (0, 0.0, 0))
             self._timed[name] = points + 1, before + seconds, held + size
         if points + 1 >= _RECORD_AFTER:
