@@ -50,7 +50,7 @@ class Calibration(Section):
 Sample = Annotated[int, Field(ge=1, le=1_000_000_000)]
 
 
-def _pair(value: object) -> object:
+def _tuple(value: object) -> object:
     # YAML and JSON know lists; a tuple can't be changed
     return tuple(value) if isinstance(value, list) else value
 
@@ -61,13 +61,13 @@ def _first_to_last(value: tuple[int, int]) -> tuple[int, int]:
     return value
 
 
-Samples = Annotated[tuple[Sample, Sample], BeforeValidator(_pair), AfterValidator(_first_to_last)]
+Samples = Annotated[tuple[Sample, Sample], BeforeValidator(_tuple), AfterValidator(_first_to_last)]
 
 
 class DriftReference(Section):
     """More samples that are at rest, for a line that is subtracted as drift."""
 
-    reference: Annotated[tuple[Samples, ...], BeforeValidator(_pair), Field(min_length=1)]
+    reference: Annotated[tuple[Samples, ...], Field(min_length=1), BeforeValidator(_tuple)]
 
 
 def _drift_kind(value: object) -> str:

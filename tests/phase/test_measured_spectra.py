@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -191,3 +192,44 @@ def test_a_wavenumber_that_most_mean_otherwise_is_refused(tmp_path: Path) -> Non
     rows = "".join(f"{7 + 0.1 * number},1\n" for number in range(20))
     file.write_text(f"wavenumber (rad/um),a\n{rows}", encoding="utf-8")
     assert read_spectra(file).wavenumber[0] == 7
+
+
+def test_values_that_stand_for_none_are_refused_in_any_form(tmp_path: Path) -> None:
+    axis = {"wavelength": ("wavelength", WAVELENGTH, {"units": "nm"})}
+    spectra = BY_WAVELENGTH.copy()
+    spectra[1, 5] = 9.969209968386869e36
+    dataset = xr.Dataset({"intensity": (("time", "wavelength"), spectra)}, axis)
+    with pytest.raises(DatasetError, match=r"1 values .* spectrum 1, 9\.96921e\+36 at"):
+        read_spectra(dataset)
+    with netCDF4.Dataset(tmp_path / "s.nc", "w") as out:
+        out.createDimension("time", 3)
+        out.createDimension("wavelength", 1024)
+        out.createVariable("wavelength", "f8", "wavelength")[:] = WAVELENGTH
+        out["wavelength"].units = "nm"
+        counts = out.createVariable("intensity", "i4", ("time", "wavelength"))
+        counts[:2] = BY_WAVELENGTH[:2].round()  # the third is never written
+    with pytest.raises(DatasetError, match=r"1024 values .* spectrum 2, nan at"):
+        read_spectra(tmp_path / "s.nc")
+
+
+def test_csv_may_have_other_separators_notes_and_an_empty_column(tmp_path: Path) -> None:
+    plain = "wavelength (nm),a,b\n" + "".join(f"{650 + t},{t + 1},{t * t}\n" for t in range(30))
+    expected = octsim.read_spectra(_written(tmp_path / "p.csv", plain))
+    forms = {
+        "semicolons": plain.replace(",", ";"),
+        "tabs": plain.replace(",", "\t"),
+        "notes": "# of Monday\n" + plain.replace("655,", "# light on\n655,"),
+        "savetxt": f"# {plain}",
+        "empty": plain.replace("\n", ",\n") + ",,,\n",
+        "spelt": plain.replace("wavelength (nm)", '"Wavelength/nm"'),
+        "windows": "\ufeff" + plain.replace("\n", "\r\n"),
+    }
+    for name, text in forms.items():
+        found = octsim.read_spectra(_written(tmp_path / f"{name}.csv", text))
+        assert np.array_equal(found.intensity, expected.intensity), name
+        assert np.array_equal(found.wavenumber, expected.wavenumber), name
+
+
+def _written(path: Path, text: str) -> Path:
+    path.write_bytes(text.encode())
+    return path
