@@ -250,9 +250,9 @@ marked as missing or is out of the valid range is missing; elsewhere such number
 -9999 far from all else, are refused.
 
 **Errors**: without `phase_error` the scatter at rest is the error of every sample, widened to the
-interval of Student's t that covers 68.3 % (1.32 times for 3 samples at rest, 1.03 for 20). A scatter
-below Δ/√12, where Δ is the smallest step of the recorder, says nothing: the error of rounding is
-stated, or NaN where no step is seen. `error_status` says which it is.
+interval of Student's t that covers 68.3 % (1.32 times for 3 samples at rest, 1.03 for 20). A
+scatter below Δ/√12, where Δ is the smallest step of the recorder, says nothing: the error of
+rounding is stated, or NaN where no step is seen. `error_status` says which it is.
 
 **Outliers**: one or two samples that are more than five standard deviations from the median of
 themselves and their four neighbours (a Hampel filter) are named in a warning, and never are the
@@ -260,9 +260,9 @@ largest change that is told. `outliers: mark` adds the variable `outlier` and ri
 figure, `outliers: drop` takes them as missing, at rest too; a pulse of two samples' width is none.
 
 **Drift**: `drift: linear` subtracts the straight line through the samples at rest in place of their
-mean; far from them it is known less well, and `statistical_error` grows. `drift: {{reference: [[181,
-200]]}}` takes more samples that are at rest, from first to last and counted from 1, so that the line
-is held at both ends. A drift at rest that is not subtracted is warned of.
+mean; far from them it is known less well, and `statistical_error` grows. With `drift: {{reference:
+[[181, 200]]}}` more samples are at rest, from first to last and counted from 1, so that the line is
+held at both ends. A drift at rest that is not subtracted is warned of.
 
 ## A worked example
 
@@ -296,7 +296,8 @@ A standard error should cover 68 %; {many} trips tell it to about 1.5.
 
 A CSV file has a first column `wavelength (nm)`, or `wavenumber (1/um)` (2π/λ), and a column of
 intensity for each spectrum, with a name of its own; a netCDF file has a variable intensity along
-such a coordinate. Every value has to be there. The phases have to be those of the calibration's estimator:
+such a coordinate. Every value has to be there. The phases have to be those of the calibration's
+estimator:
 
 ```python
 from octsim.studies.calibration.study import calibrating

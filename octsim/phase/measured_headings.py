@@ -42,8 +42,8 @@ _NAMES = {
 }
 _BRACKETS = re.compile(r"[(\[{]\s*(.*?)\s*[)\]}]")
 _ERROR = re.compile(
-    r"(?:\b|(?<=phase)|(?<=phi)|(?<=φ))(?:errs?|errors?|std|stdev|sd|se|sem|sigma|σ|unc|"
-    r"uncertainty|uncertainties|deviation|dev|rms)(?:\b|(?=phase|phi|φ))"
+    r"(?:\b|(?<=phase)|(?<=phi)|(?<=φ))(?:errs?|errors?|std|stderr|stdev|stddev|sd|se|"
+    r"sem|sigma|σ|unc|uncertainty|uncertainties|deviation|dev|rms|variance|var|noise)(?:\b|(?=phase|phi|φ))"
 )
 _PHASE = re.compile(r"phase|phi|φ|\bm?rad\b|deg|°")
 _ALIKE = 0.8
@@ -99,7 +99,9 @@ def places(headings: Sequence[str], names: Sequence[str]) -> dict[str, tuple[int
     }
 
 
-def problem(headings: Sequence[str], needed: Sequence[str], optional: Sequence[str]) -> str | None:
+def problem(
+    headings: Sequence[str], needed: Sequence[str], optional: Sequence[str], form: str
+) -> str | None:
     """Return in a line what is wrong with headings, if something is.
 
     Other headings may stand beside, but for those that may be meant as one that is not there.
@@ -109,13 +111,15 @@ def problem(headings: Sequence[str], needed: Sequence[str], optional: Sequence[s
     headings : sequence of str
     needed, optional : sequence of str
         Names that have to be there, and that may be.
+    form : str
+        How headings stand in a file, for what is said where one is not there.
     """
     names = (*needed, *optional)
     parsed = [parse(text) for text in headings]
     counts = Counter(one.name for one in parsed if one is not None and one.name in names)
     for name in needed:
         if name not in counts:
-            return _missing(name, headings)
+            return _missing(name, headings, form)
     for name, count in counts.items():
         if count > 1:
             alike = [headings[at] for at, one in enumerate(parsed) if one and one.name == name]
@@ -154,16 +158,15 @@ def unknown_unit(heading: Heading) -> str:
     return f"the unit of {heading.name} is {heading.unit!r}; the known ones are such as {known}"
 
 
-def _missing(name: str, headings: Sequence[str]) -> str:
+def _missing(name: str, headings: Sequence[str], form: str) -> str:
     proposed = f"'{name} ({QUANTITIES[name].units[0]})'"
     if not headings:
         return f"it holds no '{name}'; write a heading {proposed}"
-    said = f"it holds no '{name}' under the headings {listed(headings)}"
     meant = [text for text in headings if parse(text) is None and _may_be(text, name)]
     instead = f" in place of {meant[0]!r}" if meant else ""
     return (
-        f"{said}; write {proposed}{instead}, with commas, semicolons or tabs between cells, and # "
-        "before lines of notes"
+        f"it holds no '{name}' under the headings {listed(headings)}; write {proposed}{instead}, "
+        f"{form}"
     )
 
 

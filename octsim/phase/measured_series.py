@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from octsim.base.errors import DatasetError, FileError
 from octsim.phase.measured_headings import factor, places, problem
 from octsim.phase.measured_netcdf import read_variables
-from octsim.phase.measured_tables import is_netcdf, numbers, read_table
+from octsim.phase.measured_tables import FORM, is_netcdf, numbers, read_table
 from octsim.phase.stand_ins import stand_ins
 
 Array = NDArray[np.float64]
@@ -67,8 +67,8 @@ def read_series(path: str | Path) -> Series:
         raise DatasetError(str(error)) from None
 
 
-def _problem(headings: Sequence[str]) -> str | None:
-    return problem(headings, NEEDED, OPTIONAL)
+def _problem(headings: Sequence[str], form: str = FORM) -> str | None:
+    return problem(headings, NEEDED, OPTIONAL, form)
 
 
 def _of_csv(path: Path) -> Series:
@@ -88,7 +88,7 @@ def _of_netcdf(path: Path) -> Series:
         name if unit is None else f"{name} ({unit})"
         for name, unit in zip(names, units, strict=True)
     ]
-    if what := _problem(headings):
+    if what := _problem(headings, "as the name of a variable of numbers"):
         raise DatasetError(f"{path}: {what}")
     found = places(headings, NEEDED + OPTIONAL)
     dimensions = {name: stored[names[place]].dims for name, (place, _) in found.items()}

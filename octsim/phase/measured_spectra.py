@@ -12,7 +12,7 @@ from octsim.base.errors import DatasetError
 from octsim.config.units import inverted, parse_length
 from octsim.phase.measured_headings import listed, of_errors, parse
 from octsim.phase.measured_netcdf import read_variables
-from octsim.phase.measured_tables import Table, is_netcdf, numbers, read_table, shown
+from octsim.phase.measured_tables import FORM, Table, is_netcdf, numbers, read_table, shown
 from octsim.phase.stand_ins import stand_ins
 
 Array = NDArray[np.float64]
@@ -22,11 +22,11 @@ EVEN = 1e-6
 FEWEST = 8
 """Fewest samples of a spectrum."""
 AXES = ("wavenumber", "wavelength")
-SHORTEST, LONGEST = 1e-3, 1e3
-"""Wavelengths, µm, between which they may be of light, as a config's band."""
+SHORTEST, LONGEST = 0.05, 100.0
+"""Wavelengths, µm, between which they may be those of a spectrometer: 'um' is no 'nm'."""
 _FORM = (
     "write a first column headed 'wavelength (nm)' or 'wavenumber (1/um)' and a column of "
-    "intensity for each spectrum, with a name each"
+    f"intensity for each spectrum, with a name each, {FORM}"
 )
 
 
@@ -108,7 +108,15 @@ def _of_csv(path: Path) -> Measured:
     ]
     axis = parse(heading[0])
     assert axis is not None, "as _problem has seen"
-    k = _wavenumbers(heading[1], axis.name, axis.unit or "", str(path))
+    along = heading[1]
+    turned = np.diff(along) * np.sign(along[-1:] - along[:1]) <= 0
+    if turned.any():
+        at = 1 + int(turned.argmax())
+        raise DatasetError(
+            f"{path}, row {table.rows[at]}: {heading[0]} goes from {along[at - 1]:g} to "
+            f"{along[at]:g}; sort the rows, each once"
+        )
+    k = _wavenumbers(along, axis.name, axis.unit or "", str(path))
     return even(k, np.array([values for _, values in columns]), str(path))
 
 
@@ -185,8 +193,8 @@ def even(wavenumber: Array, intensity: Array, name: str) -> Measured:
     longest, shortest = (2 * np.pi / float(wavenumber[end]) for end in (0, -1))
     if longest > LONGEST or shortest < SHORTEST:
         raise DatasetError(
-            f"{name}: wavelengths from {shortest:.3g} to {longest:.3g} um given, which are not of "
-            "light; look at their unit, and for values that stand for none"
+            f"{name}: wavelengths from {shortest:.3g} to {longest:.3g} um given, not "
+            "those of a spectrometer; look at their unit, and for values that stand for none"
         )
     steps = np.diff(wavenumber)
     if not (steps > 0).all():

@@ -15,6 +15,7 @@ from octsim.base.files import reason
 Array = NDArray[np.float64]
 SEPARATORS = ",;\t"
 """What may stand between cells: the first with which the headings are right."""
+FORM = "with commas, semicolons or tabs between cells, and # before lines of notes"
 _NETCDF = (b"CDF", b"\x89HDF")
 
 
@@ -134,9 +135,11 @@ def _body(
             cells = split(line, separator)
         except csv.Error as error:
             raise DatasetError(f"{path}, row {row}: {_unread(line, error)}") from None
-        if len(cells) != len(headings):
+        count = len(cells)
+        if count != len(headings):
+            found = f"{count} cell{'s' * (count > 1)}"
             raise DatasetError(
-                f"{path}, row {row}: {shown(line)} given, {len(cells)} cells by {separator!r}; "
+                f"{path}, row {row}: {shown(line)} given, {found} by {separator!r}; "
                 f"write {len(headings)}, as there are headings (a decimal comma makes two of one)"
             )
         yield row, cells

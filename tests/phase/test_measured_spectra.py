@@ -121,11 +121,13 @@ def test_even_samples_are_left_as_they_are() -> None:
         ("wavelength (kg),i\n1,2\n", "wavelength has the unit 'kg'; give one such as nm"),
         ("wavenumber (um),i\n1,2\n", "wavenumber has the unit 'um'; give one such as 1/um"),
         ("wavelength (nm),i\n1,2\n2,x\n", "row 3: i of sample 2 is 'x'; give a number"),
-        ("wavelength (nm),i\n1,2\n2\n", "row 3: '2' given, 1 cells by ','; write 2"),
+        ("wavelength (nm),i\n1,2\n2\n", "row 3: '2' given, 1 cell by ','; write 2"),
         ("wavelength (nm),i\n1,2\n2,3\n", "2 samples given; give 8 or more"),
         ("wavelength (nm),i\n# dark\n1,\n", "row 3: i is '', which is no value; give one"),
         ("wavelength (nm),i\n1,2\n2,9.97e36\n", "row 3: i is '9.97e36', which is no value"),
         ("wavelength (nm),i\n1,2\n2,-9999\n", "row 3: i is '-9999', which is no value"),
+        ("wavelength (nm),i\n1,2\n2,2\n# x\n2,3\n", "row 5: wavelength (nm) goes from 2 to 2"),
+        ("wavelength (um),i\n" + "".join(f"{n},1\n" for n in range(650, 670)), "not those of a"),
         ("wavelength (nm),i\n1,inf\n", "row 2: i is 'inf', which is no value"),
         ("wavelength (nm),i\n1,2,3\n", "row 2: '1,2,3' given, 3 cells by ','; write 2"),
         ("wavelength (nm);i\n1,5;2\n", "'1,5'; write a decimal point, not a comma"),
@@ -133,7 +135,10 @@ def test_even_samples_are_left_as_they_are() -> None:
         ("wavelength (nm),i,i\n1,2,3\n", "2 columns are headed 'i'; give each its own name"),
         ("wavelength (nm),i,Wavelength (nm),j\n1,2,1,3\n", "'Wavelength (nm)' is of no spectrum"),
         ("wavelength (nm),i,i_std\n1,2,1\n", "'i_std' is of no spectrum"),
-        ("wavelength (km),i\n" + "".join(f"{n},1\n" for n in range(650, 670)), "not of light"),
+        (
+            "wavelength (km),i\n" + "".join(f"{n},1\n" for n in range(650, 670)),
+            "not those of a spectrometer",
+        ),
     ],
 )
 def test_a_csv_that_holds_no_spectra_is_refused(text: str, message: str, tmp_path: Path) -> None:
