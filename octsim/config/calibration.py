@@ -61,13 +61,20 @@ def _first_to_last(value: tuple[int, int]) -> tuple[int, int]:
     return value
 
 
+def _some(value: tuple[object, ...]) -> tuple[object, ...]:
+    # of those that are right: a wrong one is told of once
+    if not value:
+        raise ValueError("no samples are named")
+    return value
+
+
 Samples = Annotated[tuple[Sample, Sample], BeforeValidator(_tuple), AfterValidator(_first_to_last)]
 
 
 class DriftReference(Section):
     """More samples that are at rest, for a line that is subtracted as drift."""
 
-    reference: Annotated[tuple[Samples, ...], Field(min_length=1), BeforeValidator(_tuple)]
+    reference: Annotated[tuple[Samples, ...], BeforeValidator(_tuple), AfterValidator(_some)]
 
 
 def _drift_kind(value: object) -> str:

@@ -64,7 +64,7 @@ BAD: list[tuple[dict[Any, Any], str]] = [
     ({"expansion": {"outliers": "dropp"}}, "expansion.outliers: 'dropp' given; the nearest that is known is 'drop'"),
     ({"expansion": {"drift": "square"}}, "expansion.drift: 'square' given; it should be 'none', 'linear' or {reference:"),
     ({"expansion": {"drift": {"reference": [[200, 181]]}}}, "expansion.drift.reference.0: [200, 181] given; it should be"),
-    ({"expansion": {"drift": {"reference": []}}}, "expansion.drift.reference: () given; it should be"),
+    ({"expansion": {"drift": {"reference": []}}}, "expansion.drift.reference: [] given; it should be"),
     # what an archive says of itself
     ({"archive": {"date": "2026-1-1"}}, "archive.date: '2026-1-1' given; it should be a day as 2026-01-31"),
     ({"archive": {"date": "2026-02-30"}}, "archive.date: '2026-02-30' given; it should be a day"),
