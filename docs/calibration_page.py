@@ -233,11 +233,36 @@ expansion: {{series: phases.csv, diameter: 1.4 um, rest: 20}}
 
 CSV with the heading `time,phase` or `time (ms),phase (mrad),phase_error (mrad)`, or netCDF with
 variables of these names and `units`; s and rad without a word. Phases may be wrapped, samples may
-be missing (empty, or NaN). The first `rest` samples are of no expansion; without `phase_error`
-their scatter is the error of every sample. What can't be right is refused in a line: a diameter
+be missing (empty, or NaN). The first `rest` samples are of no expansion. What can't be right is
+refused in a line that names the row of the file or the sample, both counted from 1: a diameter
 outside the table, steps too large to unwrap, too few samples at rest, times that do not increase.
 `statistical_error` is that of the phase, `systematic_error` that of the slope: the latter is the
 same fraction of every sample, so no average makes it smaller.
+
+**How files are read**, those of spectra too: commas, semicolons or tabs stand between cells, points
+before decimals, and every row has as many cells as there are headings. Text is UTF-8, quotes end on
+their line, and # begins a note only where a line begins; the heading may be one of the notes above
+the numbers, as `numpy.savetxt` writes it. `Time [ms]`, `phase/mrad`, `phase_mrad`,
+`phase error (deg)`, `time (μs)` are read as they are meant; a second column of the same name, a
+unit that is not known, and headings that may be meant as one of these (`t`, `phase_err`, `sigma`)
+are refused by name. Other columns may stand beside. In netCDF what was never written (9.97e36), is
+marked as missing or is out of the valid range is missing; elsewhere such numbers, and codes such as
+-9999 far from all else, are refused.
+
+**Errors**: without `phase_error` the scatter at rest is the error of every sample, widened to the
+interval of Student's t that covers 68.3 % (1.32 times for 3 samples at rest, 1.03 for 20). A
+scatter below Δ/√12, where Δ is the smallest step of the recorder, says nothing: the error of
+rounding is stated, or NaN where no step is seen. `error_status` says which it is.
+
+**Outliers**: one or two samples that are more than five standard deviations from the median of
+themselves and their four neighbours (a Hampel filter) are named in a warning, and never are the
+largest change that is told. `outliers: mark` adds the variable `outlier` and rings them in the
+figure, `outliers: drop` takes them as missing, at rest too; a pulse of two samples' width is none.
+
+**Drift**: `drift: linear` subtracts the straight line through the samples at rest in place of their
+mean; far from them it is known less well, and `statistical_error` grows. With `drift: {{reference:
+[[181, 200]]}}` more samples are at rest, from first to last and counted from 1, so that the line is
+held at both ends. A drift at rest that is not subtracted is warned of.
 
 ## A worked example
 
@@ -270,8 +295,9 @@ A standard error should cover 68 %; {many} trips tell it to about 1.5.
 ## Spectra of your own
 
 A CSV file has a first column `wavelength (nm)`, or `wavenumber (1/um)` (2π/λ), and a column of
-intensity for each spectrum; a netCDF file has a variable intensity along such a coordinate. The
-phases have to be those of the calibration's estimator:
+intensity for each spectrum, with a name of its own; a netCDF file has a variable intensity along
+such a coordinate. Every value has to be there. The phases have to be those of the calibration's
+estimator:
 
 ```python
 from octsim.studies.calibration.study import calibrating

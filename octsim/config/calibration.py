@@ -1,8 +1,8 @@
 """Sections of the config for the way from a phase to nanometres, and its worked example."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
 
 from octsim.config.fields import (
     Number,
@@ -47,6 +47,48 @@ class Calibration(Section):
     tolerances: Tolerances = Tolerances()
 
 
+Sample = Annotated[int, Field(ge=1, le=1_000_000_000)]
+
+
+def _tuple(value: object) -> object:
+    # YAML and JSON know lists; a tuple can't be changed
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _first_to_last(value: tuple[int, int]) -> tuple[int, int]:
+    if value[0] > value[1]:
+        raise ValueError("the last sample stands before the first")
+    return value
+
+
+def _some(value: tuple[object, ...]) -> tuple[object, ...]:
+    # of those that are right: a wrong one is told of once
+    if not value:
+        raise ValueError("no samples are named")
+    return value
+
+
+Samples = Annotated[tuple[Sample, Sample], BeforeValidator(_tuple), AfterValidator(_first_to_last)]
+
+
+class DriftReference(Section):
+    """More samples that are at rest, for a line that is subtracted as drift."""
+
+    reference: Annotated[tuple[Samples, ...], BeforeValidator(_tuple), AfterValidator(_some)]
+
+
+def _drift_kind(value: object) -> str:
+    return "name" if isinstance(value, str) else "reference"
+
+
+def _off(value: object) -> object:
+    return "off" if value is False else value  # as YAML reads it
+
+
+def _none(value: object) -> object:
+    return "none" if value is None else value
+
+
 class ExpansionConfig(Section):
     """A measured series of phases, for `snakemake expansion`."""
 
@@ -57,6 +99,24 @@ class ExpansionConfig(Section):
     rest: Annotated[int, Field(ge=1, le=1_000_000)] = key(
         20, "samples at the start, whose mean phase is that of no expansion"
     )
+    outliers: Annotated[Literal["off", "mark", "drop"], BeforeValidator(_off)] = key(
+        "off", "samples that stand alone: kept and warned of, marked as well, or left out"
+    )
+    drift: Annotated[
+        Annotated[Literal["none", "linear"], Tag("name")]
+        | Annotated[DriftReference, Tag("reference")],
+        Discriminator(_drift_kind),
+        BeforeValidator(_none),
+    ] = key(
+        "none",
+        "what is subtracted: the mean at rest, the line through the samples at rest, or that "
+        "through more of them, {reference: [[first, last], ...]}, counted from 1",
+    )
+
+    @property
+    def references(self) -> tuple[tuple[int, int], ...]:
+        """Samples at rest besides those at the start, from first to last, counted from 1."""
+        return self.drift.reference if isinstance(self.drift, DriftReference) else ()
 
 
 class ActionPotential(Section):

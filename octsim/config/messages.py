@@ -39,7 +39,9 @@ def nearest_key(key: str) -> str:
     return difflib.get_close_matches(key, keys, n=1, cutoff=0)[0]
 
 
-_OF_TWO_KINDS = (["sweep", "focus"], ["processing", "window"], ["processing", "depth"])
+_OF_TWO_KINDS = (
+    ["sweep", "focus"], ["processing", "window"], ["processing", "depth"], ["expansion", "drift"],
+)  # fmt: skip
 
 
 def explain(error: ErrorDetails) -> str:
@@ -68,6 +70,11 @@ def explain(error: ErrorDetails) -> str:
         message = "it should be a plain name as text: letters, digits, '.', '_' and '-', no path"
         if not isinstance(error["input"], str):
             message += "; put it in quotes"
+    elif path.startswith("expansion.drift"):
+        message = (
+            "it should be 'none', 'linear' or {reference: [[first, last], ...]}, the first and the "
+            "last sample of each time at rest, counted from 1"
+        )
     elif error["type"] in {"model_type", "model_attributes_type"}:
         message = "it should be a mapping of keys to values"
     elif path == "sweep.focus":

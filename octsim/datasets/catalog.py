@@ -253,6 +253,7 @@ _BESIDE = (
         "Turn a measured series of phases into nanometres",
         reads=("expansion",), after=("calibration",), beside=True,
         summary="octsim.studies.calibration.expansion:summary",
+        doubts="octsim.studies.calibration.expansion:doubts",
         figures=(
             Figure("expansion", "octsim.figures.expansion:expansion_figure",
                    "expansion that a measured series comes to, with its errors"),

@@ -6,9 +6,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from octsim.figures.style import BLUE, SKY, title
+from octsim.figures.style import BLUE, ORANGE, SKY, title
+from octsim.phase.rest_error import ErrorStatus
 
 TIME_UNIT = 1e3  # ms for each s
+FROM = {
+    ErrorStatus.ROUNDING: "of rounding: the scatter at rest is less",
+    ErrorStatus.UNKNOWN: "not known: all samples at rest are equal",
+}
+"""What a statistical error is, where it is not that of the phase's scatter."""
 
 
 def standard_error(found: xr.Dataset) -> NDArray[np.float64]:
@@ -37,6 +43,19 @@ def expansion_figure(found: xr.Dataset) -> Figure:
     figure = Figure()
     axes = figure.subplots()
     draw_expansion(axes, found)
+    if "outlier" in found:
+        alone = found.isel(time=found["outlier"].values > 0)
+        axes.plot(
+            TIME_UNIT * alone["time"].values,
+            alone["expansion"].values,
+            "o",
+            color=ORANGE,
+            fillstyle="none",
+            label="outliers, alone among others",
+        )
+    status = ErrorStatus(int(found.get("error_status", ErrorStatus.SCATTER)))
+    if status in FROM:
+        axes.plot([], [], " ", label=f"statistical error {FROM[status]}")
     axes.set_title(
         title(found, f"Change of a diameter of {float(found['diameter']):.4g} µm"), fontsize=11
     )

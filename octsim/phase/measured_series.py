@@ -1,31 +1,24 @@
 """A measured series of phases: reading it, and its change from rest."""
 
-import csv
-import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.base.errors import DatasetError
-from octsim.base.files import reason
-from octsim.config.units import known_units
+from octsim.base.errors import DatasetError, FileError
+from octsim.phase.measured_headings import factor, places, problem
+from octsim.phase.measured_netcdf import read_variables
+from octsim.phase.measured_tables import FORM, is_netcdf, numbers, read_table
+from octsim.phase.stand_ins import stand_ins
 
 Array = NDArray[np.float64]
 
-UNITS: Mapping[str, tuple[str, ...]] = {
-    "time": ("s", "ms", "us", "µs"),
-    "phase": ("rad", "mrad"),
-    "phase_error": ("rad", "mrad"),
-}
-"""What a series holds, and the units that may stand beside it; the first where none does."""
+NEEDED, OPTIONAL = ("time", "phase"), ("phase_error",)
+"""What a series holds."""
 LARGEST_STEP = 0.75 * np.pi
 """Between neighbouring samples, rad; beyond it no one can tell which way round a phase went."""
-_NETCDF = (".nc", ".nc4", ".cdf")
-_HEADING = re.compile(r"\s*(\w+)\s*(?:[(\[]\s*(\S+?)\s*[)\]])?\s*")
 
 
 class Series(NamedTuple):
@@ -44,51 +37,107 @@ class PhaseChange(NamedTuple):
 
     phase: Array
     error: Array
+    scatter: float
+    """Of the samples at rest about their mean or line, rad; NaN where errors are given."""
+    freedom: float
+    """Degrees of freedom that it has; infinite where errors are given."""
+    drift: float
+    """Of the line that was subtracted, rad/s; 0 where it was the mean."""
 
 
 def read_series(path: str | Path) -> Series:
     """Read time, phase and, where it is given, phase_error from a CSV or netCDF file.
 
-    A CSV file has one heading, `time,phase` or with units `time (ms),phase (mrad)`; an empty cell
-    or `nan` is a missing sample, and what stands behind # is not read. A netCDF file has variables
-    of these names over one dimension, with units as attributes. Without units they are s and rad.
+    A CSV file has one heading, `time,phase` or with units `time (ms),phase (mrad)`; see
+    `octsim.phase.measured_headings.parse` for how it may be written. Commas, semicolons or tabs
+    stand between cells, lines that begin with # are not read, and neither are other columns; an
+    empty cell or `nan` is a missing sample. A netCDF file has variables of these names over one
+    dimension, with units as attributes. Without units they are s and rad.
 
     Raises
     ------
     DatasetError
-        If the file is missing, can't be read, or does not hold a series.
+        If the file is missing, can't be read, or does not hold a series; with the row of the file
+        or the sample, both counted from 1.
     """
     path = Path(path)
     try:
-        columns = _netcdf(path) if path.suffix.lower() in _NETCDF else _csv(path)
-    except FileNotFoundError:
-        raise DatasetError(f"{path}: not there; give the series' file") from None
-    except (OSError, RuntimeError, UnicodeDecodeError) as error:
-        raise DatasetError(f"{path}: can't be read ({reason(error)}); give CSV or netCDF") from None
-    for name in ("time", "phase"):
-        if name not in columns:
-            raise DatasetError(f"{path}: holds no '{name}'; name it so, in its heading or variable")
-    series = Series(columns["time"], columns["phase"], columns.get("phase_error"))
-    if problem := _problem(series):
-        raise DatasetError(f"{path}: {problem}")
+        return _of_netcdf(path) if is_netcdf(path) else _of_csv(path)
+    except FileError as error:
+        raise DatasetError(str(error)) from None
+
+
+def _problem(headings: Sequence[str], form: str = FORM) -> str | None:
+    return problem(headings, NEEDED, OPTIONAL, form)
+
+
+def _of_csv(path: Path) -> Series:
+    table = read_table(path, _problem)
+    columns = {
+        name: (numbers(table, place, name), factor(heading))
+        for name, (place, heading) in places(table.headings, NEEDED + OPTIONAL).items()
+    }
+    return _series(columns, lambda sample: f"{path}, row {table.rows[sample]}", str(path))
+
+
+def _of_netcdf(path: Path) -> Series:
+    stored = read_variables(path)
+    names = list(map(str, stored.variables))
+    units = [stored[name].attrs.get("units") for name in names]
+    headings = [
+        name if unit is None else f"{name} ({unit})"
+        for name, unit in zip(names, units, strict=True)
+    ]
+    if what := _problem(headings, "as the name of a variable of numbers"):
+        raise DatasetError(f"{path}: {what}")
+    found = places(headings, NEEDED + OPTIONAL)
+    dimensions = {name: stored[names[place]].dims for name, (place, _) in found.items()}
+    if len(set(dimensions.values())) > 1 or len(dimensions["phase"]) != 1:
+        said = ", ".join(f"{name} ({', '.join(map(str, of))})" for name, of in dimensions.items())
+        raise DatasetError(
+            f"{path}: the dimensions are {said}; give them all one and the same, a sample each"
+        )
+    columns = {
+        name: (stored[names[place]].values, factor(heading))
+        for name, (place, heading) in found.items()
+    }
+    return _series(columns, lambda _: str(path), str(path))
+
+
+def _series(
+    columns: Mapping[str, tuple[Array, float]], where: Callable[[int], str], name: str
+) -> Series:
+    """Make a series of columns in units of some size, if it is one; say where it is not."""
+    for what, (values, _) in columns.items():
+        marked = stand_ins(values)
+        if marked.any():
+            at = int(marked.argmax())
+            raise DatasetError(
+                f"{where(at)}: {what} of sample {at + 1} is {values[at]:g}, which stands for no "
+                "value; leave it empty, or give the value"
+            )
+    series = Series(**{what: size * values for what, (values, size) in columns.items()})
+    if found := _unfit(series):
+        place, said = found
+        raise DatasetError(f"{name if place is None else where(place)}: {said}")
     return series
 
 
-def _problem(series: Series) -> str | None:
-    """Return in a line what is wrong with a series, if something is."""
+def _unfit(series: Series) -> tuple[int | None, str] | None:
+    """Return at which sample something is wrong with a series, and what, if something is."""
     time, phase, error = series
-    if phase.ndim != 1 or any(part is not None and part.shape != phase.shape for part in series):
-        return "time, phase and phase_error are not of one length; give each sample all of them"
-    if phase.size == 0 or not np.isfinite(phase).any():
-        return "no sample has a phase; give one that has"
     if np.isinf(phase).any():
-        return f"the phase of sample {1 + int(np.isinf(phase).argmax())} is infinite; leave it out"
+        at = int(np.isinf(phase).argmax())
+        return at, f"the phase of sample {at + 1} is infinite; leave it out"
+    if not np.isfinite(phase).any():
+        return None, "no sample has a phase; give one that has"
     if not np.isfinite(time).all():
-        return f"sample {1 + int((~np.isfinite(time)).argmax())} has no time; give it one"
+        at = int((~np.isfinite(time)).argmax())
+        return at, f"sample {at + 1} has no time; give it one"
     late = np.diff(time) <= 0
     if late.any():
         at = 1 + int(late.argmax())
-        return (
+        return at, (
             f"the time goes from {time[at - 1]:g} to {time[at]:g} s at sample {at + 1}; sort the "
             "samples by time, each once"
         )
@@ -96,95 +145,111 @@ def _problem(series: Series) -> str | None:
         bad = np.isfinite(phase) & ~(np.isfinite(error) & (error >= 0))
         if bad.any():
             at = int(bad.argmax())
-            return f"phase_error of sample {at + 1} is {error[at]:g}; give a number of 0 or more"
+            said = f"phase_error of sample {at + 1} is {error[at]:g}; give a number of 0 or more"
+            return at, said
     return None
 
 
-def _scale(path: Path, name: str, units: str | None) -> float:
-    known = UNITS[name]
-    if units is not None and units not in known:
-        raise DatasetError(
-            f"{path}: the unit of {name} is '{units}'; the known ones are {', '.join(known)}"
-        )
-    return float(known_units()[units or known[0]].size)
+def change_from_rest(
+    series: Series,
+    rest: int,
+    drifts: bool = False,
+    references: Sequence[tuple[int, int]] = (),
+) -> PhaseChange:
+    r"""Unwrap a series' phases, and subtract what they are where nothing moves.
 
+    That is the mean over the samples at rest or, where the phase drifts, the straight line through
+    them by least squares. Missing samples stay missing, and are passed over when phases are
+    unwrapped. Without a phase_error, the scatter of the samples at rest serves for all. The error
+    of a change is that of the sample and of the mean or line, together: for errors e_i of n samples
+    at rest at the times t_i,
 
-def _csv(path: Path) -> dict[str, Array]:
-    lines = (line.split("#")[0] for line in path.read_text(encoding="utf-8-sig").splitlines())
-    heading, *rows = list(csv.reader(line for line in lines if line.strip())) or [[]]
-    found = [_HEADING.fullmatch(cell) for cell in heading]
-    units = {match[1]: match[2] for match in found if match}
-    places = {match[1]: place for place, match in enumerate(found) if match}
-    return {
-        name: _scale(path, name, units[name]) * _numbers(path, name, place, rows)
-        for name, place in places.items()
-        if name in UNITS
-    }
+    .. math:: e^2 + \sum_i e_i^2 (1/n + a_i (t - \bar t))^2, \quad
+              a_i = (t_i - \bar t) / \sum_j (t_j - \bar t)^2,
 
-
-def _numbers(path: Path, name: str, place: int, rows: Iterable[list[str]]) -> Array:
-    numbers = []
-    for number, row in enumerate(rows, start=1):
-        cell = row[place].strip() if place < len(row) else ""
-        try:
-            numbers.append(float(cell) if cell else np.nan)
-        except ValueError:
-            raise DatasetError(
-                f"{path}: {name} of sample {number} is '{cell}'; give a number, or leave it empty"
-            ) from None
-    return np.array(numbers, float)
-
-
-def _netcdf(path: Path) -> dict[str, Array]:
-    try:
-        stored = xr.load_dataset(path, engine="netcdf4", decode_times=False, decode_timedelta=False)
-    except ValueError as error:
-        raise DatasetError(f"{path}: can't be read ({reason(error)}); give netCDF or CSV") from None
-    return {
-        name: _scale(path, name, stored[name].attrs.get("units"))
-        * stored[name].values.astype(float)
-        for name in UNITS
-        if name in stored.variables
-    }
-
-
-def change_from_rest(series: Series, rest: int) -> PhaseChange:
-    """Unwrap a series' phases, and subtract their mean over the first samples, where nothing moves.
-
-    Missing samples stay missing, and are passed over when phases are unwrapped. Without a
-    phase_error, the scatter of the samples at rest serves for all. The error of a change is that of
-    the sample and of the mean at rest, together.
+    where all a are 0 without a drift.
 
     Parameters
     ----------
     series : Series
     rest : int
         Samples at the start that are at rest.
+    drifts : bool
+        Whether a line takes the place of the mean.
+    references : sequence of pairs of int
+        More samples that are at rest: from the first to the last of each, counted from 1.
 
     Raises
     ------
     DatasetError
         If too few of them have a phase, or a phase moves too far between samples to be unwrapped.
     """
-    phase, there = series.phase.copy(), np.isfinite(series.phase)
-    phase[there] = np.unwrap(series.phase[there])
-    steps = np.abs(np.diff(phase[there]))
-    if (steps > LARGEST_STEP).any():
-        at = int(steps.argmax())
+    phase, there = unwrapped(series), np.isfinite(series.phase)
+    still = _at_rest(series, rest, references) & there
+    count = int(still.sum())
+    needed = (1 if series.phase_error is not None else 3) + drifts
+    if count < needed:
         raise DatasetError(
-            f"series: the phase moves by {steps[at]:.3g} rad up to {series.time[there][at + 1]:g} s"
-            f", which can't be unwrapped beyond {LARGEST_STEP:.3g}; sample faster"
+            f"expansion.rest: of the first {rest} of {phase.size} samples"
+            f"{' and those of reference' if references else ''} {count} have a phase, and {needed} "
+            "are needed; give more samples at rest, or phase_error"
         )
-    still = phase[:rest][there[:rest]]
-    needed = 1 if series.phase_error is not None else 3
-    if still.size < needed or rest > phase.size:
-        raise DatasetError(
-            f"expansion.rest: of the first {rest} of {phase.size} samples {still.size} have a "
-            f"phase, and {needed} are needed; give more samples at rest, or phase_error"
-        )
+    lever = series.time - series.time[still].mean()
+    turn = lever[still] / (lever[still] ** 2).sum() if drifts else np.zeros(count)
+    slope = (turn * phase[still]).sum()
+    level = phase[still] - slope * lever[still]
     if series.phase_error is None:
-        error = np.full_like(phase, still.std(ddof=1))
+        scatter, freedom = float(level.std(ddof=1 + drifts)), count - 1.0 - drifts
+        error = np.full_like(phase, scatter)
     else:
-        error = series.phase_error
-    at_rest = np.sqrt((error[:rest][there[:rest]] ** 2).sum()) / still.size
-    return PhaseChange(phase - still.mean(), np.where(there, np.hypot(error, at_rest), np.nan))
+        scatter, freedom, error = np.nan, np.inf, series.phase_error
+    of_rest = error[still] ** 2
+    crossed, turned = count * (turn * of_rest).sum(), count**2 * (turn**2 * of_rest).sum()
+    shared = of_rest.sum() + 2 * crossed * lever + turned * lever**2
+    both = np.hypot(error, np.sqrt(shared) / count)
+    return PhaseChange(
+        phase - (level.mean() + slope * lever),
+        np.where(there, both, np.nan),
+        scatter,
+        freedom,
+        float(slope),
+    )
+
+
+def unwrapped(series: Series) -> Array:
+    """Return the phases of a series unwrapped, rad, those that are there one after the other.
+
+    Raises
+    ------
+    DatasetError
+        If one moves too far for that from one sample to the next.
+    """
+    phase, there = series.phase.copy(), np.flatnonzero(np.isfinite(series.phase))
+    phase[there] = np.unwrap(series.phase[there])
+    steps, given = np.abs(np.diff(phase[there])), np.abs(np.diff(series.phase[there]))
+    for moved, most, remedy in (
+        (given, 2 * np.pi + LARGEST_STEP, "leave out a value that stands for none"),
+        (steps, LARGEST_STEP, "sample faster"),
+    ):
+        if (moved > most).any():
+            at = there[int(moved.argmax()) + 1]
+            raise DatasetError(
+                f"series: the phase moves by {moved.max():.3g} rad up to {series.time[at]:g} s "
+                f"(sample {at + 1}), which can't be unwrapped beyond {most:.3g}; {remedy}"
+            )
+    return phase
+
+
+def _at_rest(series: Series, rest: int, references: Sequence[tuple[int, int]]) -> NDArray[np.bool_]:
+    """Mark the samples that are at rest, (T,)."""
+    still = np.zeros(series.phase.size, bool)
+    beyond = [f"{first} to {last}" for first, last in references if last > still.size]
+    if rest > still.size or beyond:
+        key, asked = ("rest", f"the first {rest}") if rest > still.size else ("drift", beyond[0])
+        raise DatasetError(
+            f"expansion.{key}: {asked} of {still.size} samples asked for; give samples that are "
+            "there"
+        )
+    for first, last in ((1, rest), *references):
+        still[first - 1 : last] = True
+    return still

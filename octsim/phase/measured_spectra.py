@@ -1,7 +1,6 @@
 """Measured spectra: read, checked, and brought to evenly spaced wavenumbers."""
 
-import csv
-import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -9,9 +8,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.base.errors import DatasetError, FileError
-from octsim.base.files import reason
+from octsim.base.errors import DatasetError
 from octsim.config.units import inverted, parse_length
+from octsim.phase.measured_headings import listed, of_errors, parse
+from octsim.phase.measured_netcdf import read_variables
+from octsim.phase.measured_tables import FORM, Table, is_netcdf, numbers, read_table, shown
+from octsim.phase.stand_ins import stand_ins
 
 Array = NDArray[np.float64]
 
@@ -19,10 +21,12 @@ EVEN = 1e-6
 """Largest departure from even spacing, over the spacing, that counts as none."""
 FEWEST = 8
 """Fewest samples of a spectrum."""
-_HEAD = re.compile(r"\s*(wavelength|wavenumber)\s*[(\[]?\s*([^)\]]*?)\s*[)\]]?\s*", re.IGNORECASE)
+AXES = ("wavenumber", "wavelength")
+SHORTEST, LONGEST = 0.05, 100.0
+"""Wavelengths, µm, between which they may be those of a spectrometer: 'um' is no 'nm'."""
 _FORM = (
     "write a first column headed 'wavelength (nm)' or 'wavenumber (1/um)' and a column of "
-    "intensity for each spectrum"
+    f"intensity for each spectrum, with a name each, {FORM}"
 )
 
 
@@ -41,10 +45,11 @@ def read_spectra(source: str | Path | xr.Dataset) -> Measured:
     Parameters
     ----------
     source : path or Dataset
-        A ``.csv`` file: a first column headed ``wavelength (nm)`` or ``wavenumber (1/um)``, any
-        unit of length, and a column for each spectrum. Any other file is netCDF, and like a
-        dataset holds ``intensity`` over a coordinate ``wavelength`` or ``wavenumber`` with the
-        attribute ``units``, and over one other dimension or none.
+        A CSV file: a first column headed ``wavelength (nm)`` or ``wavenumber (1/um)``, any unit of
+        length, and a column for each spectrum; see `octsim.phase.measured_tables.read_table` for
+        how strictly it is read. A netCDF file, like a dataset, holds ``intensity`` over a
+        coordinate ``wavelength`` or ``wavenumber`` with the attribute ``units``, and over one other
+        dimension or none. The first bytes of a file tell which it is.
 
     Raises
     ------
@@ -56,19 +61,15 @@ def read_spectra(source: str | Path | xr.Dataset) -> Measured:
     if isinstance(source, xr.Dataset):
         return _of_dataset(source, "dataset")
     path = Path(source)
-    if path.suffix.lower() == ".csv":
-        return _of_csv(path)
-    try:
-        return _of_dataset(xr.load_dataset(path, engine="netcdf4"), str(path))
-    except (OSError, RuntimeError, ValueError) as error:
-        raise FileError(f"{path}: can't be read ({reason(error)}); give netCDF or CSV") from None
+    return _of_dataset(read_variables(path), str(path)) if is_netcdf(path) else _of_csv(path)
 
 
 def _of_dataset(dataset: xr.Dataset, name: str) -> Measured:
-    axes = [axis for axis in ("wavenumber", "wavelength") if axis in dataset.coords]
+    axes = [axis for axis in AXES if axis in dataset.coords]
     if "intensity" not in dataset or not axes or axes[0] not in dataset["intensity"].dims:
         raise DatasetError(
-            f"{name}: no variable intensity over a coordinate wavelength or wavenumber; name it so"
+            f"{name}: no variable intensity over a coordinate wavelength or wavenumber; name it so "
+            f"(it holds {listed(list(map(str, dataset.variables))) or 'nothing'})"
         )
     spectra = dataset["intensity"].transpose(..., axes[0])
     if spectra.ndim > 2:
@@ -81,27 +82,67 @@ def _of_dataset(dataset: xr.Dataset, name: str) -> Measured:
     return even(_wavenumbers(along, axes[0], units, name), np.atleast_2d(spectra.values), name)
 
 
+def _problem(headings: Sequence[str]) -> str | None:
+    """Return in a line what is wrong with the headings of spectra, if something is."""
+    if not headings:
+        return _FORM
+    axis, *spectra = headings
+    named, first = [text for text in spectra if text], parse(axis)
+    if first is None or first.name not in AXES or not named:
+        return f"the header is {','.join(headings)!r}; {_FORM}"
+    others = [text for text in named if parse(text) or of_errors(text)]
+    if others:
+        return f"the column {others[0]!r} is of no spectrum, and would be read as one; leave it out"
+    twice = [text for text in named if named.count(text) > 1]
+    if twice:
+        return f"{named.count(twice[0])} columns are headed {twice[0]!r}; give each its own name"
+    return None
+
+
 def _of_csv(path: Path) -> Measured:
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            head, *rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise FileError(f"{path}: can't be read ({reason(error)}); give netCDF or CSV") from None
-    except ValueError:
-        raise DatasetError(f"{path}: empty; {_FORM}") from None
-    match = _HEAD.fullmatch(head[0])
-    if match is None or len(head) < 2:
-        raise DatasetError(f"{path}: the header is {','.join(head)!r}; {_FORM}")
-    values = np.empty((len(rows), len(head)))
-    for number, row in enumerate(rows):
-        try:
-            values[number] = np.array([float(cell) for cell in row]).reshape(len(head))
-        except ValueError:
+    table = read_table(path, _problem)
+    heading, *columns = [
+        (text, _intensities(table, place, text))
+        for place, text in enumerate(table.headings)
+        if text or _nameless(table, place)
+    ]
+    axis = parse(heading[0])
+    assert axis is not None, "as _problem has seen"
+    along = heading[1]
+    turned = np.diff(along) * np.sign(along[-1:] - along[:1]) <= 0
+    if turned.any():
+        at = 1 + int(turned.argmax())
+        raise DatasetError(
+            f"{path}, row {table.rows[at]}: {heading[0]} goes from {along[at - 1]:g} to "
+            f"{along[at]:g}; sort the rows, each once"
+        )
+    k = _wavenumbers(along, axis.name, axis.unit or "", str(path))
+    return even(k, np.array([values for _, values in columns]), str(path))
+
+
+def _nameless(table: Table, place: int) -> bool:
+    """Refuse a column of values without a heading; one without values is none."""
+    for row, cells in zip(table.rows, table.cells, strict=True):
+        if cells[place]:
             raise DatasetError(
-                f"{path}, row {number + 2}: {','.join(row)!r} given; write {len(head)} numbers"
-            ) from None
-    axis = match[1].lower()
-    return even(_wavenumbers(values[:, 0], axis, match[2], str(path)), values[:, 1:].T, str(path))
+                f"{table.path}, row {row}: {shown(cells[place])} stands in column {place + 1}, "
+                "which has no heading; give it one"
+            )
+    return False
+
+
+def _intensities(table: Table, place: int, name: str) -> Array:
+    """Return the numbers in a column, each of which has to be one."""
+    found = numbers(table, place, name)
+    bad = ~np.isfinite(found) | stand_ins(found)
+    if bad.any():
+        at = int(bad.argmax())
+        given = shown(table.cells[at][place])
+        raise DatasetError(
+            f"{table.path}, row {table.rows[at]}: {name} is {given}, which is no value; give one, "
+            "or leave the row out"
+        )
+    return found
 
 
 def _wavenumbers(along: Array, axis: str, units: str, name: str) -> Array:
@@ -149,6 +190,12 @@ def even(wavenumber: Array, intensity: Array, name: str) -> Measured:
         wavenumber, intensity = wavenumber[::-1], intensity[:, ::-1]
     if not (np.isfinite(wavenumber).all() and wavenumber[0] > 0):
         raise DatasetError(f"{name}: a wavelength or wavenumber is not a positive number; mend it")
+    longest, shortest = (2 * np.pi / float(wavenumber[end]) for end in (0, -1))
+    if longest > LONGEST or shortest < SHORTEST:
+        raise DatasetError(
+            f"{name}: wavelengths from {shortest:.3g} to {longest:.3g} um given, not "
+            "those of a spectrometer; look at their unit, and for values that stand for none"
+        )
     steps = np.diff(wavenumber)
     if not (steps > 0).all():
         place = int(np.argmax(steps <= 0))
@@ -156,12 +203,13 @@ def even(wavenumber: Array, intensity: Array, name: str) -> Measured:
             f"{name}: wavelengths or wavenumbers out of order, or twice, at "
             f"{wavenumber[place]:.6g} 1/um; sort them"
         )
-    bad = ~np.isfinite(intensity)
+    bad = ~np.isfinite(intensity) | stand_ins(intensity)
     if bad.any():
         spectrum, sample = np.argwhere(bad)[0]
         raise DatasetError(
             f"{name}: {bad.sum()} values of intensity are not numbers, the first in spectrum "
-            f"{spectrum}, at {wavenumber[sample]:.6g} 1/um; mend or leave them out"
+            f"{spectrum}, {intensity[spectrum, sample]:g} at {wavenumber[sample]:.6g} 1/um; mend "
+            "or leave them out"
         )
     target = np.linspace(wavenumber[0], wavenumber[-1], wavenumber.size)
     if np.abs(wavenumber - target).max() > EVEN * steps.mean():

@@ -61,6 +61,10 @@ BAD: list[tuple[dict[Any, Any], str]] = [
     ({"calibration": {"step": "1 um"}}, "calibration.step: '1 um' given; it should be less than or equal to 0.01 um"),
     ({"calibration": {"tolerances": {"index": 1}}}, "calibration.tolerances.index: unknown key"),
     ({"expansion": {"series": 5}}, "expansion.series: 5 given"),
+    ({"expansion": {"outliers": "dropp"}}, "expansion.outliers: 'dropp' given; the nearest that is known is 'drop'"),
+    ({"expansion": {"drift": "square"}}, "expansion.drift: 'square' given; it should be 'none', 'linear' or {reference:"),
+    ({"expansion": {"drift": {"reference": [[200, 181]]}}}, "expansion.drift.reference.0: [200, 181] given; it should be"),
+    ({"expansion": {"drift": {"reference": []}}}, "expansion.drift.reference: [] given; it should be"),
     # what an archive says of itself
     ({"archive": {"date": "2026-1-1"}}, "archive.date: '2026-1-1' given; it should be a day as 2026-01-31"),
     ({"archive": {"date": "2026-02-30"}}, "archive.date: '2026-02-30' given; it should be a day"),
@@ -309,3 +313,13 @@ def test_an_unknown_preset_lists_the_known() -> None:
     with pytest.raises(ConfigError) as said:
         load_config({"tracing": {"preset": "standart"}})
     assert all(name in str(said.value) for name in PRESETS)
+
+
+def test_off_and_nothing_are_what_yaml_reads_them_as(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text("expansion: {outliers: off, drift: null}\n", encoding="utf-8")
+    assert load_config(file) == Config()
+    file.write_text("expansion: {drift: {reference: [[181, 200], [1, 3]]}}\n", encoding="utf-8")
+    found = load_config(file)
+    assert found.expansion.references == ((181, 200), (1, 3))
+    assert load_config(found.to_dict()) == found

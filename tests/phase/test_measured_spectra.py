@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -119,9 +120,25 @@ def test_even_samples_are_left_as_they_are() -> None:
         ("wavelength (nm)\n1\n", "the header is 'wavelength"),
         ("wavelength (kg),i\n1,2\n", "wavelength has the unit 'kg'; give one such as nm"),
         ("wavenumber (um),i\n1,2\n", "wavenumber has the unit 'um'; give one such as 1/um"),
-        ("wavelength (nm),i\n1,2\n2,x\n", "row 3: '2,x' given; write 2 numbers"),
-        ("wavelength (nm),i\n1,2\n2\n", "row 3: '2' given; write 2 numbers"),
+        ("wavelength (nm),i\n1,2\n2,x\n", "row 3: i of sample 2 is 'x'; give a number"),
+        ("wavelength (nm),i\n1,2\n2\n", "row 3: '2' given, 1 cell by ','; write 2"),
         ("wavelength (nm),i\n1,2\n2,3\n", "2 samples given; give 8 or more"),
+        ("wavelength (nm),i\n# dark\n1,\n", "row 3: i is '', which is no value; give one"),
+        ("wavelength (nm),i\n1,2\n2,9.97e36\n", "row 3: i is '9.97e36', which is no value"),
+        ("wavelength (nm),i\n1,2\n2,-9999\n", "row 3: i is '-9999', which is no value"),
+        ("wavelength (nm),i\n1,2\n2,2\n# x\n2,3\n", "row 5: wavelength (nm) goes from 2 to 2"),
+        ("wavelength (um),i\n" + "".join(f"{n},1\n" for n in range(650, 670)), "not those of a"),
+        ("wavelength (nm),i\n1,inf\n", "row 2: i is 'inf', which is no value"),
+        ("wavelength (nm),i\n1,2,3\n", "row 2: '1,2,3' given, 3 cells by ','; write 2"),
+        ("wavelength (nm);i\n1,5;2\n", "'1,5'; write a decimal point, not a comma"),
+        ("wavelength (nm),i,\n1,2,3\n", "row 2: '3' stands in column 3, which has no heading"),
+        ("wavelength (nm),i,i\n1,2,3\n", "2 columns are headed 'i'; give each its own name"),
+        ("wavelength (nm),i,Wavelength (nm),j\n1,2,1,3\n", "'Wavelength (nm)' is of no spectrum"),
+        ("wavelength (nm),i,i_std\n1,2,1\n", "'i_std' is of no spectrum"),
+        (
+            "wavelength (km),i\n" + "".join(f"{n},1\n" for n in range(650, 670)),
+            "not those of a spectrometer",
+        ),
     ],
 )
 def test_a_csv_that_holds_no_spectra_is_refused(text: str, message: str, tmp_path: Path) -> None:
@@ -180,3 +197,44 @@ def test_a_wavenumber_that_most_mean_otherwise_is_refused(tmp_path: Path) -> Non
     rows = "".join(f"{7 + 0.1 * number},1\n" for number in range(20))
     file.write_text(f"wavenumber (rad/um),a\n{rows}", encoding="utf-8")
     assert read_spectra(file).wavenumber[0] == 7
+
+
+def test_values_that_stand_for_none_are_refused_in_any_form(tmp_path: Path) -> None:
+    axis = {"wavelength": ("wavelength", WAVELENGTH, {"units": "nm"})}
+    spectra = BY_WAVELENGTH.copy()
+    spectra[1, 5] = 9.969209968386869e36
+    dataset = xr.Dataset({"intensity": (("time", "wavelength"), spectra)}, axis)
+    with pytest.raises(DatasetError, match=r"1 values .* spectrum 1, 9\.96921e\+36 at"):
+        read_spectra(dataset)
+    with netCDF4.Dataset(tmp_path / "s.nc", "w") as out:
+        out.createDimension("time", 3)
+        out.createDimension("wavelength", 1024)
+        out.createVariable("wavelength", "f8", "wavelength")[:] = WAVELENGTH
+        out["wavelength"].units = "nm"
+        counts = out.createVariable("intensity", "i4", ("time", "wavelength"))
+        counts[:2] = BY_WAVELENGTH[:2].round()  # the third is never written
+    with pytest.raises(DatasetError, match=r"1024 values .* spectrum 2, nan at"):
+        read_spectra(tmp_path / "s.nc")
+
+
+def test_csv_may_have_other_separators_notes_and_an_empty_column(tmp_path: Path) -> None:
+    plain = "wavelength (nm),a,b\n" + "".join(f"{650 + t},{t + 1},{t * t}\n" for t in range(30))
+    expected = octsim.read_spectra(_written(tmp_path / "p.csv", plain))
+    forms = {
+        "semicolons": plain.replace(",", ";"),
+        "tabs": plain.replace(",", "\t"),
+        "notes": "# of Monday\n" + plain.replace("655,", "# light on\n655,"),
+        "savetxt": f"# {plain}",
+        "empty": plain.replace("\n", ",\n") + ",,,\n",
+        "spelt": plain.replace("wavelength (nm)", '"Wavelength/nm"'),
+        "windows": "\ufeff" + plain.replace("\n", "\r\n"),
+    }
+    for name, text in forms.items():
+        found = octsim.read_spectra(_written(tmp_path / f"{name}.csv", text))
+        assert np.array_equal(found.intensity, expected.intensity), name
+        assert np.array_equal(found.wavenumber, expected.wavenumber), name
+
+
+def _written(path: Path, text: str) -> Path:
+    path.write_bytes(text.encode())
+    return path

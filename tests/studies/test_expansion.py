@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import octsim
-from octsim.base.errors import ConfigError, OctsimError
+from octsim.base.errors import ConfigError, OctsimError, OctsimWarning
 from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.figures.expansion import expansion_figure
@@ -23,6 +23,7 @@ from octsim.phase.noise import shot_noise
 from octsim.studies.calibration import study as calibrate
 from octsim.studies.calibration.expansion import (
     LARGEST,
+    doubts,
     expansion,
     expansion_of_series,
     sensitivity_at,
@@ -131,6 +132,114 @@ def test_a_series_becomes_a_dataset_that_explains_itself(table: xr.Dataset, tmp_
     assert "1 of 30 samples missing" in expansion_summary(found)
     with look():
         save(expansion_figure(found), tmp_path / "expansion.png")
+
+
+QUIET: Array = 2e-4 * np.random.default_rng(11).normal(size=200)  # rad
+PULSE: Array = np.exp(-(((np.arange(200) - 120) / 6) ** 2))  # of 1 nm
+LONG = 5e-5 * np.arange(200, dtype=np.float64)
+
+
+def test_an_outlier_is_named_and_never_the_largest_change(table: xr.Dataset) -> None:
+    phase = phases(PULSE) + QUIET
+    phase[149] += 0.2
+    series = Series(LONG, phase)
+    with pytest.warns(OctsimWarning, match=r"outliers.*: sample 150 at 0.00745 s \(\+8\.") as said:
+        kept = series_expansion(Config(), series, table)
+    assert [str(one.message) for one in said] == doubts(kept)
+    assert "expansion.outliers: drop leaves them out" in doubts(kept)[0]
+    assert "outlier" not in kept
+    assert expansion_summary(kept).startswith("largest change +1.0")
+    assert "at 0.00595 s" in expansion_summary(kept) or "at 0.006 s" in expansion_summary(kept)
+    assert "1 outliers not counted; 0 of 200 samples missing" in expansion_summary(kept)
+    marking, dropping = (load_config({"expansion": {"outliers": o}}) for o in ("mark", "drop"))
+    marked = series_expansion(marking, series, table)
+    assert np.flatnonzero(marked["outlier"]).tolist() == [149]
+    assert marked["outlier"].attrs["flag_meanings"] == "among_others alone"
+    assert np.array_equal(marked["expansion"], kept["expansion"])
+    dropped = series_expansion(dropping, series, table)
+    assert np.isnan(dropped["expansion"][149])
+    assert np.isnan(dropped["statistical_error"][149])
+    there = np.delete(np.arange(200), 149)
+    assert np.array_equal(dropped["expansion"][there], kept["expansion"][there])
+    assert dropped["measured_phase"][149] == phase[149], "as it was measured"
+    assert "left out, as expansion.outliers says" in doubts(dropped)[0]
+
+
+def test_an_outlier_that_stops_the_rest_is_named_with_its_remedy(table: xr.Dataset) -> None:
+    dropping = load_config({"expansion": {"outliers": "drop"}})
+    clean = series_expansion(Config(), Series(LONG, phases(PULSE) + QUIET), table)
+    for size in (0.8, 2.8, -100.0):  # beyond 20 nm, not to be unwrapped, neither nor
+        phase = phases(PULSE) + QUIET
+        phase[[5, 149]] += size
+        with pytest.raises(OctsimError, match=r"; sample 6 at 0.00025 s, sample 150 at") as error:
+            series_expansion(Config(), Series(LONG, phase), table)
+        assert str(error.value).endswith("expansion.outliers: drop leaves them out")
+        dropped = series_expansion(dropping, Series(LONG, phase), table)
+        off = dropped["expansion"] - clean["expansion"]
+        assert float(np.abs(off).max()) < 0.02
+
+
+def test_a_drift_is_warned_of_and_subtracted_by_samples_at_rest(table: xr.Dataset) -> None:
+    drifting = Series(LONG, phases(PULSE) + 5 * LONG + QUIET)
+    plain = series_expansion(load_config({"expansion": {"rest": 60}}), drifting, table)
+    assert "the phase at rest drifts" in " ".join(doubts(plain))
+    straight, held = (
+        series_expansion(load_config({"expansion": {"rest": 60, "drift": drift}}), drifting, table)
+        for drift in ("linear", {"reference": [[171, 200]]})
+    )
+    assert float(held["drift"]) == pytest.approx(5, abs=0.02)
+    for found in (straight, held):
+        assert doubts(found) == []
+        off = np.abs(found["expansion"].values - PULSE)
+        assert (off < 5 * found["statistical_error"].values).all()
+    # the farther from rest, the less a line through it is known: n samples, 169.5 from their middle
+    error = straight["statistical_error"].values
+    grown = np.sqrt((61 / 60 + 12 * 169.5**2 / (60**3 - 60)) / (61 / 60))
+    assert error[-1] / error[29:31].mean() == pytest.approx(grown, rel=1e-3)
+    assert float(held["statistical_error"][-1]) < 1.03 * float(held["statistical_error"][30])
+    at_rest = series_expansion(Config(), Series(LONG, phases(PULSE) + QUIET), table)
+    assert doubts(at_rest) == []
+    assert float(at_rest["drift"]) == 0
+
+
+def test_a_rest_without_scatter_is_asked_about(table: xr.Dataset, tmp_path: Path) -> None:
+    rounded = 0.01 * np.round(phases(10 * PULSE) / 0.01)
+    with pytest.warns(OctsimWarning, match="rest scatter by 0 mrad, less .* step of 10 mrad"):
+        found = series_expansion(Config(), Series(LONG, rounded), table)
+    assert found["error_status"].attrs["flag_meanings"].split()[int(found["error_status"])] == (
+        "rounding"
+    )
+    least = 10 / SLOPE / np.sqrt(12)
+    assert (found["statistical_error"] > least).all()
+    with pytest.warns(OctsimWarning, match="is not known, and NaN"):
+        still = series_expansion(Config(), Series(LONG, np.full(200, 0.3)), table)
+    assert np.isnan(still["statistical_error"]).all()
+    assert "± unknown (statistical)" in expansion_summary(still)
+    none = Series(LONG, phases(PULSE) + QUIET, np.zeros(200))
+    with pytest.warns(OctsimWarning, match="phase_error is 0 throughout"):
+        series_expansion(Config(), none, table)
+    with look():
+        for number, one in enumerate((found, still)):
+            save(expansion_figure(one), tmp_path / f"{number}.png")
+
+
+def test_few_samples_at_rest_widen_the_error_as_student_s_t_does(table: xr.Dataset) -> None:
+    series = Series(LONG, phases(PULSE) + QUIET)
+    for rest, factor in ((3, 1.3213), (60, 1.0086)):
+        found = series_expansion(load_config({"expansion": {"rest": rest}}), series, table)
+        scatter = QUIET[:rest].std(ddof=1)
+        expected = factor * scatter * np.sqrt(1 + 1 / rest) * 1e3 / SLOPE
+        assert float(found["statistical_error"][0]) == pytest.approx(expected, rel=1e-3)
+        assert float(found["rest_scatter"]) == pytest.approx(scatter)
+
+
+def test_a_figure_rings_the_outliers(table: xr.Dataset) -> None:
+    phase = phases(PULSE) + QUIET
+    phase[149] += 0.2
+    marking = load_config({"expansion": {"outliers": "mark"}})
+    (axes,) = expansion_figure(series_expansion(marking, Series(LONG, phase), table)).axes
+    (ringed,) = [line for line in axes.lines if line.get_label() == "outliers, alone among others"]
+    assert np.asarray(ringed.get_xdata()) == pytest.approx([7.45])
 
 
 @pytest.mark.parametrize("change", [-10.0, -1.0, 1.0, 10.0])

@@ -84,7 +84,13 @@ OTHERS: dict[str, Any] = {
             "wavelength_max": "1 nm",
         },
     },
-    "expansion": {"series": "phases.csv", "diameter": "1.5 um", "rest": 5},
+    "expansion": {
+        "series": "phases.csv",
+        "diameter": "1.5 um",
+        "rest": 5,
+        "outliers": "drop",
+        "drift": "linear",
+    },
     "action_potential": {"diameter": "1.5 um", "expansion": "2 nm", "photons": 1e9, "seed": 2},
     "archive": {
         "title": "Ours",

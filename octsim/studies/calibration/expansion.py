@@ -1,5 +1,6 @@
 """From a measured phase to nanometres (`snakemake expansion`)."""
 
+import warnings
 from typing import NamedTuple
 
 import numpy as np
@@ -7,10 +8,14 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
-from octsim.base.errors import ConfigError, DatasetError, OctsimError
+from octsim.base.errors import ConfigError, DatasetError, OctsimError, OctsimWarning
 from octsim.config.models import Config
-from octsim.datasets.files import make
-from octsim.phase.measured_series import Series, change_from_rest, read_series
+from octsim.datasets.files import flags, make
+from octsim.phase.measured_series import Series, read_series
+from octsim.phase.outliers import Standing, outliers
+from octsim.phase.rest_error import ErrorStatus, smallest_step, stated_change
+from octsim.studies.calibration.expansion_doubts import doubts as doubts
+from octsim.studies.calibration.expansion_doubts import named_samples, outliers_in
 
 Array = NDArray[np.float64]
 LARGEST = 20.0
@@ -149,23 +154,47 @@ def series_expansion(config: Config, series: Series, calibration: xr.Dataset) ->
     -------
     Dataset
         phase_change, expansion, statistical_error and systematic_error (time); the diameter, the
-        slope with its systematic error and the number of missing samples; the series itself, as it
-        was measured: measured_phase and, where it is known, measured_phase_error (time).
+        slope with its systematic error and the number of missing samples; where the statistical
+        error is from (error_status, rest_scatter, smallest_step), and the drift that was
+        subtracted; the series itself, as it was measured: measured_phase and, where it is known,
+        measured_phase_error (time); and, unless ``expansion.outliers`` is off, outlier (time).
 
     Raises
     ------
     OctsimError
-        If the series or the diameter does not serve; see `change_from_rest` and `expansion`.
+        If the series or the diameter does not serve; see `stated_change` and `expansion`.
+
+    Warns
+    -----
+    OctsimWarning
+        Of each thing that the numbers may not be worth: see `doubts`.
     """
-    settings = config.expansion
-    change = change_from_rest(series, settings.rest)
-    found = expansion(change.phase, settings.diameter, calibration, change.error)
+    settings, alone = config.expansion, outliers(series)
+    dropped = alone if settings.outliers == "drop" else np.zeros_like(alone)
+    kept = series._replace(phase=np.where(dropped, np.nan, series.phase))
+    try:
+        change, status = stated_change(
+            kept, settings.rest, settings.drift != "none", settings.references
+        )
+        found = expansion(change.phase, settings.diameter, calibration, change.error)
+    except OctsimError as error:
+        if not (alone & ~dropped).any():
+            raise
+        raise DatasetError(
+            f"{error}; {named_samples(alone, series.time)} stand out from their neighbours: "
+            "expansion.outliers: drop leaves them out"
+        ) from None
     at = sensitivity_at(settings.diameter, calibration)
     missing = np.where(np.isfinite(change.phase), 0.0, np.nan)
     measured = {"measured_phase": ("time", series.phase)}
     if series.phase_error is not None:
         measured["measured_phase_error"] = ("time", series.phase_error)
-    return make(
+    marked = (
+        {}
+        if settings.outliers == "off"
+        else {"outlier": ("time", *flags(Standing, alone.astype(int)))}
+    )
+    made = make(
         "expansion",
         config,
         "Change of the diameter over time, from a measured phase",
@@ -178,10 +207,18 @@ def series_expansion(config: Config, series: Series, calibration: xr.Dataset) ->
             "fixed_focus_phase_slope": at.slope,
             "fixed_focus_phase_slope_standard_error": at.standard_error,
             "samples_missing": int(np.isnan(change.phase).sum()),
+            "error_status": ((), *flags(ErrorStatus, np.array(status))),
+            "rest_scatter": change.scatter,
+            "smallest_step": smallest_step(series.phase),
+            "drift": change.drift,
             **measured,
+            **marked,
         },
         {"time": series.time},
     )
+    for doubt in doubts(made):
+        warnings.warn(doubt, OctsimWarning, stacklevel=2)
+    return made
 
 
 def series_in(found: xr.Dataset) -> xr.Dataset:
@@ -200,13 +237,15 @@ def series_in(found: xr.Dataset) -> xr.Dataset:
 
 
 def summary(found: xr.Dataset) -> str:
-    """Return what a series comes to, in one line."""
-    sizes = np.abs(found["expansion"].values)
-    at = int(np.nanargmax(sizes))
-    one = found.isel(time=at)
+    """Return what a series comes to, in one line; an outlier is never its largest change."""
+    alone = outliers_in(found)
+    sizes = np.where(alone, np.nan, np.abs(found["expansion"].values))
+    one = found.isel(time=int(np.nanargmax(sizes)))
+    statistical = float(one["statistical_error"])
+    error = "unknown" if np.isnan(statistical) else f"{statistical:.4f}"
+    besides = f", {alone.sum()} outliers not counted" if alone.any() else ""
     return (
         f"largest change {float(one['expansion']):+.4f} nm at {float(one['time']):.6g} s, ± "
-        f"{float(one['statistical_error']):.4f} (statistical) ± "
-        f"{float(one['systematic_error']):.4f} (systematic); {int(found['samples_missing'])} of "
-        f"{sizes.size} samples missing"
+        f"{error} (statistical) ± {float(one['systematic_error']):.4f} (systematic){besides}; "
+        f"{int(found['samples_missing'])} of {sizes.size} samples missing"
     )

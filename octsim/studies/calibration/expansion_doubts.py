@@ -1,0 +1,108 @@
+"""What is doubtful about a measured series and its expansion, in words."""
+
+import json
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from octsim.base.errors import DatasetError
+from octsim.config.calibration import ExpansionConfig
+from octsim.phase.measured_series import Series
+from octsim.phase.outliers import THRESHOLD, outliers
+from octsim.phase.rest_error import ErrorStatus, stated_change, student_factor
+
+Array = NDArray[np.float64]
+_NAMED = 3
+"""Outliers that are named; of more, the number."""
+_SURE = 4.0
+"""Standard deviations from which a drift at rest is said to be one."""
+
+
+def measured_in(found: xr.Dataset) -> Series:
+    """Return the series that an expansion records, as it was measured."""
+    error = found.get("measured_phase_error")
+    return Series(
+        found["time"].values,
+        found["measured_phase"].values,
+        None if error is None else error.values,
+    )
+
+
+def outliers_in(found: xr.Dataset) -> NDArray[np.bool_]:
+    """Mark the outliers of the series that an expansion records, (T,)."""
+    return outliers(measured_in(found))
+
+
+def named_samples(marked: NDArray[np.bool_], time: Array, change: Array | None = None) -> str:
+    """Name the first of some samples by number (from 1), time and, where it is known, change."""
+    places = np.flatnonzero(marked)
+    said = [
+        f"sample {at + 1} at {time[at]:.6g} s"
+        + ("" if change is None or np.isnan(change[at]) else f" ({change[at]:+.3g} nm)")
+        for at in places[:_NAMED]
+    ]
+    more = [f"{places.size - _NAMED} more"] if places.size > _NAMED else []
+    return ", ".join([*said, *more])
+
+
+def doubts(found: xr.Dataset) -> list[str]:
+    """Say, a line each, what of an expansion may not be as it seems, and what to do.
+
+    These are outliers, an error at rest that is only the recorder's rounding or not known at all,
+    and a drift at rest that is not subtracted.
+    """
+    said = []
+    settings = ExpansionConfig.model_validate(json.loads(found.attrs["config"])["expansion"])
+    series, change = measured_in(found), found["expansion"].values
+    alone = outliers(series)
+    if alone.any():
+        remedy = (
+            "left out, as expansion.outliers says"
+            if settings.outliers == "drop"
+            else "not taken for the largest change; expansion.outliers: drop leaves them out"
+        )
+        said.append(
+            f"outliers, more than {THRESHOLD:g} standard deviations from their neighbours: "
+            f"{named_samples(alone, series.time, change)}; {remedy}"
+        )
+    status = int(found["error_status"])
+    if status == ErrorStatus.ROUNDING:
+        said.append(
+            f"the samples at rest scatter by {1e3 * float(found['rest_scatter']):.3g} mrad, less "
+            f"than the recorder's smallest step of {1e3 * float(found['smallest_step']):.3g} mrad "
+            "can show: statistical_error is that of rounding; record finer steps, or give "
+            "phase_error"
+        )
+    if status == ErrorStatus.UNKNOWN:
+        said.append(
+            "the samples at rest all have one phase, and the recorder's steps are not seen: "
+            "statistical_error is not known, and NaN; give phase_error, or samples that scatter"
+        )
+    if series.phase_error is not None and not series.phase_error.any():
+        said.append(
+            "phase_error is 0 throughout, and statistical_error with it; give the phase's error, "
+            "or leave the column out to have the scatter at rest instead"
+        )
+    if settings.outliers == "drop":
+        series = series._replace(phase=np.where(alone, np.nan, series.phase))
+    if settings.drift == "none":
+        said += _drifting(series, settings.rest, float(found["fixed_focus_phase_slope"]))
+    return said
+
+
+def _drifting(series: Series, rest: int, slope: float) -> list[str]:
+    """Say that the samples at rest drift, if they surely do and it matters by the end."""
+    try:
+        level, line = (stated_change(series, rest, drifts)[0] for drifts in (False, True))
+    except DatasetError:  # too few of them for a line
+        return []
+    end = np.flatnonzero(np.isfinite(series.phase))[-1]
+    moved = level.phase[end] - line.phase[end]
+    if not abs(moved) > student_factor(line.freedom, _SURE) * line.error[end]:
+        return []
+    return [
+        f"the phase at rest drifts, by {1e3 * moved:+.3g} mrad ({1e3 * moved / slope:+.3g} nm) up "
+        "to the end if it goes on so; expansion.drift: linear subtracts it, or name samples at "
+        "rest at the end as well: {reference: [[first, last]]}"
+    ]
