@@ -21,6 +21,10 @@ BIN = .venv/bin
 PEERS_PIP = .venv-peers/bin/python -m pip --disable-pip-version-check --quiet
 PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 
+# what a user's environment tells other programs of Python's (octsim/base/surroundings.py)
+unexport $(filter-out PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX PYTHONUNBUFFERED,$(filter PYTHON%,$(.VARIABLES)))
+export PYTHONSAFEPATH = 1
+
 # snakemake itself says little of a config that is missing or not YAML
 define CHECK
 import sys, warnings, octsim
