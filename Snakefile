@@ -169,7 +169,8 @@ onstart:
 onsuccess:
     for stage in [*jobs(beside=False), *sorted(PLANNED.intersection(jobs(beside=True)))]:
         found = Path(f"{FOLDER}/logs/{stage}.log")
-        lines = found.read_text().splitlines() if found.is_file() else []  # asked for less
+        # there is none of what was not asked for
+        lines = found.read_text("utf-8").splitlines() if found.is_file() else []
         told = [line for line in lines if line.startswith("octsim: ")]
         print(*told, sep="\n", end="\n" if told else "", file=sys.stderr)
     print(f"octsim: datasets and figures are in {FOLDER}/", file=sys.stderr)
