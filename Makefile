@@ -23,7 +23,6 @@ PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 # what a user's environment tells other programs of Python's (octsim/base/surroundings.py)
 unexport $(filter-out PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX PYTHONUNBUFFERED,$(filter PYTHON%,$(.VARIABLES)))
-export PYTHONSAFEPATH = 1
 
 # names of files as they are given, whatever make and the shell would read into them
 export GIVEN_CONFIG := $(value CONFIG)
@@ -44,11 +43,11 @@ export CHECK
 .PHONY: results archive reproduce test test-all test-processors lint format docs bench bench-sweeps \
 	bench-peers kills lock slurm test-slurm bench-slurm clean
 results: .venv/run
-	@$(BIN)/python -c "$$CHECK" "$$GIVEN_CONFIG"
+	@$(BIN)/python -P -c "$$CHECK" "$$GIVEN_CONFIG"
 	@$(BIN)/snakemake --cores $(CORES) --configfile "$$GIVEN_CONFIG"
 
 archive: .venv/run
-	@$(BIN)/python -c "$$CHECK" "$$GIVEN_CONFIG"
+	@$(BIN)/python -P -c "$$CHECK" "$$GIVEN_CONFIG"
 	@$(BIN)/snakemake archive --cores $(CORES) --configfile "$$GIVEN_CONFIG"
 
 reproduce: .venv/run
