@@ -21,6 +21,14 @@ BIN = .venv/bin
 PEERS_PIP = .venv-peers/bin/python -m pip --disable-pip-version-check --quiet
 PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 
+# what a user's environment tells other programs of Python's (octsim/base/surroundings.py)
+unexport $(filter-out PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX PYTHONUNBUFFERED,$(filter PYTHON%,$(.VARIABLES)))
+
+# names of files as they are given, whatever make and the shell would read into them
+export GIVEN_CONFIG := $(value CONFIG)
+export GIVEN_FILE := $(value FILE)
+export GIVEN_INTO := $(value INTO)
+
 # snakemake itself says little of a config that is missing or not YAML
 define CHECK
 import sys, warnings, octsim
@@ -35,16 +43,16 @@ export CHECK
 .PHONY: results archive reproduce test test-all test-processors lint format docs bench bench-sweeps \
 	bench-peers kills lock slurm test-slurm bench-slurm clean
 results: .venv/run
-	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
-	@$(BIN)/snakemake --cores $(CORES) --configfile "$(CONFIG)"
+	@$(BIN)/python -P -c "$$CHECK" "$$GIVEN_CONFIG"
+	@$(BIN)/snakemake --cores $(CORES) --configfile "$$GIVEN_CONFIG"
 
 archive: .venv/run
-	@$(BIN)/python -c "$$CHECK" "$(CONFIG)"
-	@$(BIN)/snakemake archive --cores $(CORES) --configfile "$(CONFIG)"
+	@$(BIN)/python -P -c "$$CHECK" "$$GIVEN_CONFIG"
+	@$(BIN)/snakemake archive --cores $(CORES) --configfile "$$GIVEN_CONFIG"
 
 reproduce: .venv/run
-	@test -n "$(FILE)" -a -n "$(INTO)" || { echo "octsim: make reproduce needs FILE= and INTO=" >&2; exit 2; }
-	@$(BIN)/octsim reproduce "$(FILE)" "$(INTO)" --cores $(CORES) $(TOLERANCE:%=--tolerance %)
+	@test -n "$$GIVEN_FILE" -a -n "$$GIVEN_INTO" || { echo "octsim: make reproduce needs FILE= and INTO=" >&2; exit 2; }
+	@$(BIN)/octsim reproduce "$$GIVEN_FILE" "$$GIVEN_INTO" --cores $(CORES) $(TOLERANCE:%=--tolerance %)
 
 test: .venv/dev
 	$(BIN)/pytest -n 2 -m "not trial"

@@ -10,15 +10,26 @@
 # whole, at its end, so a run that fails leaves what was there.
 import math
 import os
+import shlex
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
+# a script of the user's that is called octsim.py too, here or on PYTHONPATH, is not the package
+for place in sys.path[:]:
+    if Path(place, "octsim.py").is_file() and not Path(place, "octsim").is_dir():
+        sys.path.remove(place)
+from octsim.base.surroundings import settle_imports, settle_words
+
+settle_imports()
+settle_words()
+
 from filelock import FileLock, Timeout
+from octsim.base import clock
 from octsim.base.errors import OctsimError
-from octsim.base.files import require_folder
+from octsim.base.files import digest_of, require_folder
 from octsim.base.provenance import lock_file, source_digest
-from octsim.cli.job_server import SOCKET, start
+from octsim.cli.job_server import PYTHON, SOCKET, start
 from octsim.config.derive import parts_of
 from octsim.config.grid import remarks
 from octsim.config.load import load_config
@@ -38,6 +49,8 @@ try:
     estimate = expected(run)
     if estimate.is_large:
         print(f"octsim: {estimate}", file=sys.stderr)
+    if workflow.is_main_process and (remark := clock.set_back(Path(f"results/{run.run}"))):
+        print(f"octsim: warning: {remark}", file=sys.stderr)
 except OctsimError as error:
     sys.exit(f"octsim: {error}")
 if run.run == Config().run and run != Config():
@@ -46,6 +59,7 @@ if run.run == Config().run and run != Config():
 for remark in remarks(run):
     print(f"octsim: warning: {remark}", file=sys.stderr)
 
+sys.executable = shlex.quote(PYTHON)  # snakemake writes it into commands of a shell as it is
 os.environ["OCTSIM_RUN"] = str(os.getpid())  # a job ends with the run that started it
 if workflow.is_main_process:
     os.environ["OCTSIM_CORES"] = str(workflow.cores)
@@ -62,7 +76,8 @@ CORES = int(os.environ.get("OCTSIM_CORES", workflow.cores))
 FOLDER = f"results/{run.run}"
 FIGURES = run_figures(run)
 SHARES = shares_of(run)  # a stage that takes long is scattered over several jobs
-# a measured series is a file of the user's; one that is not there is said by the job
+# a measured series is a file of the user's: what stands in it counts, not its time, which another
+# clock may have set; one that is not there is said by the job
 SERIES = [file for file in [run.expansion.series] if file and Path(file).is_file()]
 LOCK = FileLock(f"{FOLDER}/.lock")  # held from the start of a run to its end
 # of other targets, what was asked for once: an archive has it too, brought up to date
@@ -88,7 +103,9 @@ def made_from_rows(rows: tuple[Stage, ...]) -> dict[str, object]:
     codes = [code_of(row.name, run) for row in rows]
     codes += [figures_code(*row.figures) for row in rows if row.beside]
     keys = (key for row in rows for key in keys_read(row.name, run))
-    return made_from(" ".join(codes), *dict.fromkeys(keys))
+    series = SERIES if "expansion" in {row.name for row in rows} else []
+    held = {file: digest_of(Path(file)) for file in series}
+    return made_from(" ".join(codes), *dict.fromkeys(keys)) | held
 
 
 def when_asked(work: Callable[..., object], *arguments: object) -> Callable[[object], object]:
@@ -102,7 +119,7 @@ def sources(rows: tuple[Stage, ...]) -> dict[str, object]:
     found = {name: f"{FOLDER}/{name}.nc" for name in CATALOG if name in names}
     if "expansion" in {row.name for row in rows}:
         # without a series the job says so at once, and nothing is calibrated for it
-        return found | {"series": SERIES} if SERIES else {}
+        return found if SERIES else {}
     # a job of a grid says at once that it is of a single config, and no law is fitted for it
     return {} if run.grid.varied and rows[0].beside else found
 
@@ -152,7 +169,8 @@ onstart:
 onsuccess:
     for stage in [*jobs(beside=False), *sorted(PLANNED.intersection(jobs(beside=True)))]:
         found = Path(f"{FOLDER}/logs/{stage}.log")
-        lines = found.read_text().splitlines() if found.is_file() else []  # asked for less
+        # there is none of what was not asked for
+        lines = found.read_text("utf-8").splitlines() if found.is_file() else []
         told = [line for line in lines if line.startswith("octsim: ")]
         print(*told, sep="\n", end="\n" if told else "", file=sys.stderr)
     print(f"octsim: datasets and figures are in {FOLDER}/", file=sys.stderr)
@@ -250,7 +268,6 @@ rule archive:
     input:
         rules.all.input,
         BESIDE,
-        lock_file() or [],
     output:
         update(f"{FOLDER}/{run.run}.zip"),
     log:
@@ -260,6 +277,7 @@ rule archive:
         made_from=lambda _: made_from(
             source_digest("octsim.archive.pack"), "archive", *run.to_record()
         ),
+        lock=lambda _: (held := lock_file()) and digest_of(held),
         day=os.environ.get("SOURCE_DATE_EPOCH", ""),
     message:
         "Pack the run for a data repository"

@@ -97,6 +97,7 @@ def reproduce(original: Recorded, folder: Path, cores: int) -> Recorded:
     print(f"octsim: making {stages} in {folder / results}; {LOG} there tells", file=sys.stderr)
     command = [
         sys.executable, "-m", "snakemake", "--snakefile", str(CHECKOUT / "Snakefile"),
+        "--profile", "none",  # none of the user's
         "--workflow-profile", str(CHECKOUT / "profiles" / "default"), "--directory", str(folder),
         "--configfile", str(file), "--cores", str(cores),
         *(str(results / f"{stage}.nc") for stage in original.datasets),

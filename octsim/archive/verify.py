@@ -6,7 +6,7 @@ Nothing in an archive is run or unpickled; nothing of it is written before all o
 import os
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import IO
 
@@ -96,12 +96,21 @@ def unpacked(file: Path) -> Iterator[Path]:
 
     Raises
     ------
-    ArchiveError, FileError
-        As `unpack`.
+    ArchiveError
+        If the archive is not as it was packed.
+    FileError
+        If there is no room for it among the temporary files.
     """
-    with tempfile.TemporaryDirectory(prefix="octsim-") as name:
-        folder = Path(name) / "run"
-        unpack(file, folder)
+    with ExitStack() as held:
+        try:
+            name = held.enter_context(tempfile.TemporaryDirectory(prefix="octsim-"))
+            folder = Path(name) / "run"
+            unpack(file, folder)
+        except (OSError, FileError) as error:
+            raise FileError(
+                f"{file}: can't be unpacked among the temporary files ({reason(error)}); make room "
+                "there, or give another folder for them: TMPDIR=..."
+            ) from None
         yield folder
 
 

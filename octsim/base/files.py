@@ -1,6 +1,7 @@
 """Files that appear whole or not at all."""
 
 import contextlib
+import hashlib
 import os
 import shutil
 from collections.abc import Iterator
@@ -59,6 +60,12 @@ def require_empty(folder: Path) -> None:
         raise FileError(
             f"{folder}: not an empty folder; give one that is, or that is not there yet"
         )
+
+
+def digest_of(path: Path) -> str:
+    """Return the SHA-256 of what a file holds, in lower-case hexadecimal."""
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 @contextmanager

@@ -50,7 +50,9 @@ def do(task: Task) -> int:
     folder, begin = Path(task.folder), time.monotonic()
     end_with_the_run(folder)
     Path(task.log).parent.mkdir(parents=True, exist_ok=True)
-    logging.basicConfig(filename=task.log, level=logging.INFO, format="%(message)s", force=True)
+    logging.basicConfig(
+        filename=task.log, encoding="utf-8", level=logging.INFO, format="%(message)s", force=True
+    )
     logging.captureWarnings(capture=True)
     logging.raiseExceptions = False  # a full disk is said once, by what hits it
     warnings.simplefilter("ignore", OctsimWarning)  # the workflow has said these once

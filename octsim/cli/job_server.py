@@ -21,6 +21,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from octsim.base.surroundings import settled
+
+PYTHON = sys.executable
 SOCKET = "OCTSIM_JOB_SERVER"
 """Environment variable with the path of the socket."""
 _LOOK = 1.0  # s, between looks at whether the parent is still there
@@ -46,12 +49,12 @@ def start() -> "tempfile.TemporaryDirectory[str] | None":
         except OSError:
             return None
         listener.listen(64)  # from now on who asks is heard
-        # -P, as what stands in the folder of the run is no library
-        command = [sys.executable, "-P", "-m", "octsim.cli.job_server"]
+        command = [PYTHON, "-m", "octsim.cli.job_server"]
         subprocess.Popen(
             [*command, str(listener.fileno()), str(os.getpid())],
             pass_fds=[listener.fileno()], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
+            # there is no matplotlibrc in the folder of the socket, as there may be in the user's
+            stderr=subprocess.DEVNULL, cwd=folder.name, env=settled(os.environ),
         )  # fmt: skip
     os.environ[SOCKET] = path
     return folder

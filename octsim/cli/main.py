@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import NoReturn
 
 from octsim.base.errors import OctsimError
+from octsim.base.surroundings import settle
 from octsim.cli import archive, cache, compare, reproduce
 
 MODULES = (archive, compare, reproduce, cache)
@@ -23,7 +24,13 @@ class Parser(argparse.ArgumentParser):
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; return its exit status."""
+    """Run the command; return its exit status.
+
+    Without arguments they are the process's own, which goes without what its environment holds
+    for other programs.
+    """
+    if arguments is None:
+        settle()
     parser = Parser(prog="octsim", description="Ray tracing of OCT of a neuron.")
     commands = parser.add_subparsers(required=True, metavar="command")
     for module in MODULES:

@@ -6,6 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from octsim.figures.envelope import band, extremes
 from octsim.figures.style import BLUE, ORANGE, SKY, title
 from octsim.phase.rest_error import ErrorStatus
 
@@ -24,16 +25,21 @@ def standard_error(found: xr.Dataset) -> NDArray[np.float64]:
 
 
 def draw_expansion(axes: Axes, found: xr.Dataset) -> None:
-    """Draw an expansion over time, with bands of its errors."""
+    """Draw an expansion over time, with bands of its errors; of a long one, what can be seen."""
     time, change = TIME_UNIT * found["time"].values, found["expansion"].values
     for error, colour, text in (
         (standard_error(found), SKY, "± both errors"),
         (found["statistical_error"].values, BLUE, "± statistical error"),
     ):
         axes.fill_between(
-            time, change - error, change + error, color=colour, alpha=0.35, linewidth=0, label=text
-        )
-    axes.plot(time, change, color=BLUE, linewidth=1, marker=".", markersize=3, label="recovered")
+            *band(time, change - error, change + error),
+            color=colour, alpha=0.35, linewidth=0, label=text,
+        )  # fmt: skip
+    shown = extremes(time, change)
+    axes.plot(
+        time[shown], change[shown], color=BLUE, linewidth=1, markersize=3, label="recovered",
+        marker="." if shown.size == time.size else "",
+    )  # fmt: skip
     axes.set_xlabel("Time (ms)")
     axes.set_ylabel("Change of the diameter (nm)")
 

@@ -6,9 +6,13 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import Collection, QuadMesh
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from octsim.base.files import whole
 
@@ -18,6 +22,7 @@ PURPLE, VERMILION, SKY = "#CC79A7", "#D55E00", "#56B4E9"
 # green is the ideal spectrum's, black the prediction's
 _COMPONENTS = (BLUE, ORANGE, PURPLE, VERMILION, SKY)
 _SYMBOLS = {"um": "µm", "um-1": "1/µm", "1": ""}
+_MANY = 5000
 _LOOK: Any = {
     "axes.formatter.useoffset": False,  # ticks say what they are
     "axes.grid": True,
@@ -35,8 +40,8 @@ _LOOK: Any = {
 
 
 def look() -> AbstractContextManager[None]:
-    """Return the context in which figures are made and saved."""
-    return mpl.rc_context(_LOOK)
+    """Return the context in which figures are made and saved, whatever a matplotlibrc says."""
+    return mpl.rc_context({**mpl.rcParamsDefault, **_LOOK})
 
 
 def component_colour(component: int) -> str:
@@ -61,6 +66,8 @@ def title(dataset: xr.Dataset, text: str) -> str:
 def save(figure: Figure, path: Path) -> None:
     """Write a figure as its path's ending says, whole or not at all, the same bytes each time.
 
+    What has very many points is pixels in an SVG too, so that its size does not grow with the data.
+
     Raises
     ------
     FileError
@@ -68,5 +75,20 @@ def save(figure: Figure, path: Path) -> None:
     """
     metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
     FigureCanvasAgg(figure)
+    for artist in figure.findobj(_has_many_points):
+        artist.set_rasterized(True)
     with whole(path) as temporary:
         figure.savefig(temporary, metadata=metadata)
+
+
+def _has_many_points(artist: Artist) -> bool:
+    """Return whether an artist would be more than about half a megabyte of an SVG."""
+    counts = [0]
+    if isinstance(artist, Line2D):
+        counts = [np.asarray(artist.get_xdata()).size]
+    elif isinstance(artist, QuadMesh):
+        counts = [np.asarray(artist.get_array()).size]
+    elif isinstance(artist, Collection):
+        outlines = sum(len(np.asarray(path.vertices)) for path in artist.get_paths())
+        counts = [outlines, np.asarray(artist.get_offsets()).size // 2]
+    return max(counts) > _MANY

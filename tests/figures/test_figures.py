@@ -1,7 +1,9 @@
 """Figures: drawn from stored datasets, labelled with units, the same bytes each time."""
 
 from pathlib import Path
+from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 import pytest
 import xarray as xr
@@ -38,6 +40,64 @@ def test_a_figure_is_the_same_bytes_each_time_and_has_units(
         assert (tmp_path / f"a.{form}").read_bytes() == (tmp_path / f"b.{form}").read_bytes()
     labels = {text for axes in figure.axes for text in (axes.get_xlabel(), axes.get_ylabel())}
     assert labels - {""} == LABELS[name]
+
+
+def test_no_matplotlibrc_of_the_user_changes_a_byte(
+    stages: dict[str, xr.Dataset], tmp_path: Path
+) -> None:
+    theirs: dict[Any, Any] = {
+        "savefig.dpi": 300, "savefig.bbox": "tight", "axes.labelsize": 20, "lines.marker": "o",
+        "text.usetex": True, "svg.fonttype": "none", "axes.facecolor": "black",
+        "path.simplify": False, "font.family": "serif", "axes.formatter.use_locale": True,
+        "timezone": "Europe/Berlin", "svg.id": "theirs",
+    }  # fmt: skip
+    for copy, rc in (("none", {}), ("theirs", theirs)):
+        with mpl.rc_context(rc):
+            before = dict(mpl.rcParams.copy())
+            with look():
+                figure = figure_of(FIGURES["figure_12"], stages, Processing())
+                for form in ("png", "svg"):
+                    save(figure, tmp_path / f"{copy}.{form}")
+            assert dict(mpl.rcParams.copy()) == before
+    for form in ("png", "svg"):
+        assert (tmp_path / f"none.{form}").read_bytes() == (
+            tmp_path / f"theirs.{form}"
+        ).read_bytes()
+
+
+def longer(dataset: xr.Dataset, axis: str, count: int) -> xr.Dataset:
+    """Repeat a dataset along an axis, that is as long as it was but has many points."""
+    old = dataset[axis]
+    new = np.linspace(float(old.min()), float(old.max()), count)
+    repeated = dataset.isel({axis: np.sort(np.arange(count) % old.size)})
+    return repeated.assign_coords({axis: (axis, new, old.attrs)})
+
+
+@pytest.mark.parametrize(
+    ("name", "axis"),
+    [
+        ("figure_6", "focus"),
+        ("figure_7", "diameter"),
+        ("figure_8", "wavenumber"),
+        ("figure_10", "diameter"),
+        ("figure_11", "diameter"),
+        ("figure_12", "diameter"),
+        ("paths", "diameter"),
+        ("grid", "window"),
+    ],
+)
+def test_a_figure_of_very_many_points_is_a_small_file(
+    name: str, axis: str, stages: dict[str, xr.Dataset], over_grid: xr.Dataset, tmp_path: Path
+) -> None:
+    many = {source: stages[source] for source in FIGURES[name].sources}
+    if name == "grid":
+        wide = xr.concat([over_grid] * 60, "centre", data_vars="minimal")
+        many = {"phase_slope": wide.isel(window=np.arange(600) % 2)}
+    else:
+        many = {source: longer(dataset, axis, 40_000) for source, dataset in many.items()}
+    with look():
+        save(figure_of(FIGURES[name], many, Processing()), tmp_path / "a.svg")
+    assert (tmp_path / "a.svg").stat().st_size < 1_500_000
 
 
 LABELS = {

@@ -3,7 +3,14 @@
 import sys
 from pathlib import Path
 
-from octsim.cli.job_server import ask
+# a script of the user's that is called octsim.py too, on PYTHONPATH, is not the package
+for place in sys.path[:]:
+    if Path(place, "octsim.py").is_file() and not Path(place, "octsim").is_dir():
+        sys.path.remove(place)
+from octsim.base.surroundings import settle  # noqa: E402
+from octsim.cli.job_server import ask  # noqa: E402
+
+settle()
 
 # not the rule's name, which is another where this workflow is a module of one of the user's
 named, log = snakemake.wildcards, Path(snakemake.log[0])
