@@ -35,7 +35,23 @@ class Measured(NamedTuple):
     """Wavenumbers 2π/λ, (K,), 1/µm."""
 
 
+class Raw(NamedTuple):
+    """Spectra as they were measured, over wavenumbers in any spacing, rising or falling."""
+
+    wavenumber: Array
+    """Wavenumbers 2π/λ, (K,), 1/µm."""
+    intensity: Array
+    """Spectra, (D, K), in their own unit."""
+    name: str
+    """Where they are from, for what is said of them."""
+
+
 def read_spectra(source: str | Path | xr.Dataset) -> Measured:
+    """Read spectra, and bring them to evenly spaced wavenumbers; see `read_raw` and `even`."""
+    return even(*read_raw(source))
+
+
+def read_raw(source: str | Path | xr.Dataset) -> Raw:
     """Read spectra from netCDF or CSV, or take them from a dataset.
 
     Parameters
@@ -64,7 +80,7 @@ def read_spectra(source: str | Path | xr.Dataset) -> Measured:
         raise FileError(f"{path}: can't be read ({reason(error)}); give netCDF or CSV") from None
 
 
-def _of_dataset(dataset: xr.Dataset, name: str) -> Measured:
+def _of_dataset(dataset: xr.Dataset, name: str) -> Raw:
     axes = [axis for axis in ("wavenumber", "wavelength") if axis in dataset.coords]
     if "intensity" not in dataset or not axes or axes[0] not in dataset["intensity"].dims:
         raise DatasetError(
@@ -78,10 +94,10 @@ def _of_dataset(dataset: xr.Dataset, name: str) -> Measured:
         )
     units = str(dataset[axes[0]].attrs.get("units", ""))
     along = np.asarray(dataset[axes[0]].values, float)
-    return even(_wavenumbers(along, axes[0], units, name), np.atleast_2d(spectra.values), name)
+    return Raw(_wavenumbers(along, axes[0], units, name), np.atleast_2d(spectra.values), name)
 
 
-def _of_csv(path: Path) -> Measured:
+def _of_csv(path: Path) -> Raw:
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
             head, *rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
@@ -101,7 +117,7 @@ def _of_csv(path: Path) -> Measured:
                 f"{path}, row {number + 2}: {','.join(row)!r} given; write {len(head)} numbers"
             ) from None
     axis = match[1].lower()
-    return even(_wavenumbers(values[:, 0], axis, match[2], str(path)), values[:, 1:].T, str(path))
+    return Raw(_wavenumbers(values[:, 0], axis, match[2], str(path)), values[:, 1:].T, str(path))
 
 
 def _wavenumbers(along: Array, axis: str, units: str, name: str) -> Array:
