@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-SEVERAL = 3
-"""Samples of one extreme value that may be cut; two happen by symmetry."""
+SEVERAL = 4
+"""Samples of one extreme value that may be cut; three of whole numbers happen by chance."""
 _STEPS = 4  # of the converter, below the largest value
 _MORE = 2.0
 
@@ -13,8 +13,8 @@ _MORE = 2.0
 def are_cut(intensity: Array) -> NDArray[np.bool_]:
     """Return which spectra have samples that are cut, at the top or at the bottom.
 
-    They stand on the extreme value in a number, `SEVERAL` or more and twice that of the samples on
-    the next four steps of the converter: a smooth maximum that is only rounded has fewer there. The
+    They stand on the extreme value in a number, `SEVERAL` and twice that of the samples on the next
+    four steps of the converter, or more: a smooth maximum that is only rounded has fewer there. The
     step is the least difference of two values. What is cut by less than some steps is not seen,
     nor what was changed sample by sample since.
 
@@ -43,4 +43,4 @@ def _is_cut(spectrum: Array) -> bool:
         return False
     step = np.diff(values).min()
     below = counts[:-1][values[:-1] >= values[-1] - _STEPS * step].sum()
-    return bool(counts[-1] > _MORE * below)
+    return bool(counts[-1] >= SEVERAL + _MORE * below)

@@ -144,13 +144,15 @@ def _drawn(
     generator = np.random.default_rng(_SEED)
     deviation = noise[:, np.newaxis] / fit.root
     without = phases(fit.fitted, wavenumber, nominal, processing)
-    square = np.zeros((2, fit.depth.size))
+    total, square = np.zeros((2, 2, fit.depth.size))
     for _ in range(DRAWS):
         noisy = fit.fitted + deviation * generator.standard_normal(wavenumber.size)
         found = phases(noisy, wavenumber, nominal, processing)
-        square[0] += wrapped(found.phase - without.phase) ** 2
-        square[1] += (found.depth - without.depth) ** 2
-    phase, depth = np.sqrt(square / DRAWS)
+        moved = np.stack([wrapped(found.phase - without.phase), found.depth - without.depth])
+        total += moved
+        square += moved**2
+    # about their mean: noise shifts a midpoint as well, by the same in every spectrum of a series
+    phase, depth = np.sqrt(np.maximum(square - total**2 / DRAWS, 0) / (DRAWS - 1))
     held = processing.estimator == "zero_padded" and processing.depth != "peak"
     return phase, np.full_like(depth, np.nan) if held else depth
 

@@ -9,7 +9,7 @@ from octsim.config.processing import Processing
 from octsim.phase.estimators.estimate import Array
 from octsim.phase.estimators.sinusoid import Fit, fit_sinusoid
 from octsim.phase.fringe_status import WITH_PHASE, FringeStatus
-from octsim.phase.transform import centred, rounding_level
+from octsim.phase.transform import centred, optical_depths, rounding_level
 
 FEWEST_OSCILLATIONS = 0.75
 """Over the band: of less a curve that is no oscillation has as much."""
@@ -119,6 +119,15 @@ def seen(intensity: Array, fit: Fit, left: Leftover) -> NDArray[np.int8]:
     found = np.select(list(conditions.values()), list(conditions), FringeStatus.VISIBLE)
     # a fit that went astray is none either
     return np.where(np.isfinite(amplitude), found, FringeStatus.NO_FRINGE).astype(np.int8)
+
+
+def is_elsewhere(
+    component: NDArray[np.int64], wavenumber: Array, depth: Array
+) -> NDArray[np.bool_]:
+    """Return whether components (D,) are more than one from the optical depths (D,), µm."""
+    at = optical_depths(wavenumber)
+    away: NDArray[np.bool_] = np.abs(at[component] - depth) > at[1]
+    return away
 
 
 class Fringe(NamedTuple):

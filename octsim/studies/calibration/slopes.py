@@ -6,12 +6,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from octsim.base.errors import OctsimError
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 from octsim.phase.derivatives import Array, Derivative, derivative, stencil, wrapped
 from octsim.phase.estimators.series import series_phases
+from octsim.phase.estimators.visible import fringe_at
+from octsim.phase.fringe_status import FringeStatus
 from octsim.schemes.light import AccuracyStatus
 from octsim.studies.calibration.tolerances import PARAMETERS, moved, offsets_of
 from octsim.studies.sides import side_slopes
@@ -117,6 +120,18 @@ def observed(instrument: Instrument, diameters: Array, foci: Array) -> Spectra:
     return Spectra(np.stack(intensity), max(error), max(status))
 
 
+def _require_fringe(seen: Spectra, wavenumber: Array, diameter: float, depth: float) -> None:
+    """Refuse a diameter (µm) at whose optical depth (µm) its spectra have no fringe."""
+    middle = seen.intensity[len(seen.intensity) // 2, np.newaxis]
+    found = fringe_at(middle, wavenumber, np.array([depth]), seen.error)
+    status = FringeStatus(int(found.status[0]))
+    if not status.has_phase:
+        raise OctsimError(
+            f"calibration: no phase at a diameter of {diameter:.4g} um ({status.name.lower()}): "
+            f"{status.remedy}"
+        )
+
+
 def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
     """Return what a calibration holds at a diameter and its focus, both µm.
 
@@ -125,6 +140,11 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
     dict
         By the names of the dataset's variables; ``sensitivity`` and ``sensitivity_error`` of each
         of `PARAMETERS`, (P,), in mrad/nm per unit of the parameter.
+
+    Raises
+    ------
+    OctsimError
+        If the spectra have no fringe of the diameter.
     """
     own, step, k = bench.instrument, bench.step, bench.instrument.wavenumber
     depth = float(own.nominal_depth(np.array(diameter)))
@@ -136,6 +156,7 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
         return observed(placed.instrument, diameters, np.full(sides.size, focus + placed.focus))
 
     fixed = observed(own, diameter + offsets, held)
+    _require_fringe(fixed, k, diameter, depth)
     following = observed(own, diameter + offsets, focus + bench.law_slope * offsets)
     focused = observed(own, at_rest, focus + offsets)
     bent = [pair(placed) for placed in bench.bent.placed]
