@@ -15,7 +15,8 @@ from octsim.phase.cut_samples import are_cut
 from octsim.phase.estimators import estimate, phases
 from octsim.phase.estimators.estimate import Array, Estimate, Phases
 from octsim.phase.estimators.likelihood import maximum_likelihood
-from octsim.phase.fringe_status import doubts_of
+from octsim.phase.estimators.visible import unusable
+from octsim.phase.fringe_status import FringeStatus, doubts_of
 from octsim.phase.measured_spectra import Raw, even, read_raw
 
 BEST = Processing.model_validate(
@@ -69,12 +70,18 @@ def ideal_phases(config: Config, spectra: Array, diameter: Array, wavenumber: Ar
     """Estimate the phases (D,) of ideal spectra cos(2ndk), (D, K).
 
     They are those of 1 − cos(2ndk), half a turn away: of opposite reflections, from whose phase a
-    fringe's order is counted. Maximum likelihood, whose model they are not, has the prediction's.
+    fringe's order is counted; NaN where they are not resolved. Maximum likelihood, whose model they are not, has the prediction's.
     """
     n_neuron, processing = config.scene.refractive_index.neuron, config.processing
     if processing.estimator == "maximum_likelihood":
         return predicted_phase_slope(n_neuron, wavenumber[0], wavenumber[-1]) * diameter
-    return phases(1 - spectra, wavenumber, n_neuron * diameter, processing).phase
+    depth, found = n_neuron * diameter, np.full(diameter.size, np.nan)
+    resolved = unusable(spectra, wavenumber, depth) != FringeStatus.NOT_RESOLVED
+    if resolved.any():
+        found[resolved] = phases(
+            1 - spectra[resolved], wavenumber, depth[resolved], processing
+        ).phase
+    return found
 
 
 def phase_of(

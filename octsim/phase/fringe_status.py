@@ -70,7 +70,10 @@ _REMEDIES: Mapping[FringeStatus, str] = {
     FringeStatus.WITHIN_ERROR: "ask for more by tracing.accuracy",
     FringeStatus.OTHER_DEPTHS: _ALONE,
     FringeStatus.SATURATED: "expose for less, so that no sample is cut, and measure again",
-    FringeStatus.FAR_FROM_NOMINAL: "check the diameter, the index and the wavenumbers",
+    FringeStatus.FAR_FROM_NOMINAL: (
+        "check the diameter, the index and the wavenumbers, and divide measured spectra by the "
+        "source's own"
+    ),
     FringeStatus.MIXED: f"{_ALONE}; else its phase and slope are not of the diameter alone",
     FringeStatus.POOR_FIT: (
         "divide the spectra by the source's own, or raise the degrees of processing.sinusoid; else "

@@ -29,8 +29,6 @@ class PhaseStatus(IntEnum):
     """It holds nothing but rounding, as the constant one, whose mean is subtracted."""
     NO_SPECTRUM = 2
     """The spectrum is NaN, as there is no focus."""
-    NO_FRINGE = 3
-    """The spectrum has no fringe of the diameter: fringe_status says why."""
 
 
 @Streamed
@@ -42,7 +40,7 @@ def fourier(config: Config, spectra: xr.Dataset) -> Stream:
     Dataset
         magnitude, phase and whether that is known (diameter, component), depth(component);
         visibility and status of the fringe (diameter); and, of another estimator than fft,
-        estimated_phase and estimated_depth (diameter). Phases are NaN where there is no fringe.
+        estimated_phase and estimated_depth (diameter), NaN where there is no fringe.
     """
 
     def own(config: Config) -> dict[str, Coordinate]:
@@ -79,8 +77,6 @@ def _transformed(layout: Layout, stored: Stored) -> Iterator[Part]:
         fringe = _fringe(at.config, part, magnitude)
         visible = np.isin(fringe.status, WITH_PHASE)
         status = _status(magnitude, rounding_level(intensity, at.config.processing))
-        hidden = ~visible[:, np.newaxis] & (status == PhaseStatus.KNOWN)
-        status = np.where(hidden, PhaseStatus.NO_FRINGE, status)
         phase = np.where(status == PhaseStatus.KNOWN, np.angle(components), np.nan)
         variables: dict[str, Any] = {
             "magnitude": (dimensions, magnitude),

@@ -13,6 +13,7 @@ from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.optics.two_beams import ideal_spectra, predicted_phase_slope
 from octsim.phase.by_config import ideal_phases
+from octsim.phase.fringe_status import WITH_PHASE
 from octsim.phase.slopes import phase_slopes, slope_of
 from octsim.phase.transform import fourier_components
 from octsim.stages.fourier import block_points, by_components
@@ -67,7 +68,11 @@ def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[
     """Return the slopes of some diameters of a part that holds their neighbours too."""
     inner = slice(before, before + span.stop - span.start)
     diameter, k = part["diameter"].values, config.spectrum.wavenumbers()
-    found = phase_slopes(diameter, part["magnitude"].values, part["phase"].values)
+    phase = part["phase"].values
+    if "fringe_status" in part:  # files of 0.3.0 and before don't have it
+        visible = np.isin(part["fringe_status"].values, WITH_PHASE)
+        phase = np.where(visible[:, np.newaxis], phase, np.nan)
+    found = phase_slopes(diameter, part["magnitude"].values, phase)
     n_neuron = config.scene.refractive_index.neuron
     spectra = ideal_spectra(n_neuron, diameter, k)
     ideal = fourier_components(spectra, config.processing)
@@ -76,7 +81,6 @@ def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[
     if not by_components(config):
         slope = slope_of(diameter, part["estimated_phase"].values)
         ideal_slope = slope_of(diameter, ideal_phases(config, spectra, diameter, k))
-    # files of 0.3.0 and before don't have it
     fringe = {name: part[name].isel(diameter=inner) for name in ("fringe_status",) if name in part}
     return {
         **{name: (one.dims, one.values, one.attrs) for name, one in fringe.items()},

@@ -79,7 +79,11 @@ def estimate(
         else:
             errors = _drawn(wavenumber, nominal[part], processing, fit, noise)
         far = _far(wavenumber, known[part], fit, noise)
-        status[part] = _judged(seen(spectra, fit, left), cut[part], far, fit, left)
+        seen_as, at_depth = seen(spectra, fit, left), unusable(spectra, wavenumber, fit.depth)
+        # the depth where it is may be too small, where the expected one was not
+        short = np.isin(seen_as, WITH_PHASE) & (at_depth != FringeStatus.VISIBLE)
+        seen_as = np.where(short, at_depth, seen_as)
+        status[part] = _judged(seen_as, cut[part], far, fit, left)
         residual[part] = np.sqrt(((spectra - fit.fitted) ** 2).mean(axis=1))
         visibility = np.abs(fit.amplitude[:, 0]) / np.abs(fit.offset[:, 0])
         values = np.stack([own.phase, own.depth, visibility, _decibels(fit, noise), *errors])

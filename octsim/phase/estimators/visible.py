@@ -52,6 +52,7 @@ def unusable(intensity: Array, wavenumber: Array, depth: Array) -> NDArray[np.in
     conditions = {
         FringeStatus.NO_SPECTRUM: np.isnan(intensity).any(axis=1),
         FringeStatus.NO_LIGHT: ~(np.abs(intensity) > 0).any(axis=1),
+        FringeStatus.NO_FRINGE: np.ptp(intensity, axis=1) <= _rounding(intensity),
         FringeStatus.TOO_FEW_OSCILLATIONS: oscillations < FEWEST_OSCILLATIONS,
         FringeStatus.NOT_RESOLVED: (intervals <= 2 * oscillations)
         | (wavenumber.size < FEWEST_SAMPLES),
@@ -59,6 +60,12 @@ def unusable(intensity: Array, wavenumber: Array, depth: Array) -> NDArray[np.in
     return np.select(list(conditions.values()), list(conditions), FringeStatus.VISIBLE).astype(
         np.int8
     )
+
+
+def _rounding(intensity: Array) -> Array:
+    """Return the amplitude (D,) below which there is nothing but rounding in spectra (D, K)."""
+    level: Array = rounding_level(intensity, _HELD)[:, 0] / intensity.shape[1]
+    return level
 
 
 def leftover(intensity: Array, wavenumber: Array, fit: Fit) -> Leftover:
@@ -104,7 +111,6 @@ def seen(intensity: Array, fit: Fit, left: Leftover) -> NDArray[np.int8]:
     """
     amplitude, samples = np.abs(fit.amplitude[:, 0]), intensity.shape[1]
     error = fit.unit_errors()[0] * np.sqrt(left.noise)
-    rounding = rounding_level(intensity, _HELD)[:, 0] / samples
     curve = (centred(intensity, "polynomial", "boxcar", CURVE) ** 2).mean(axis=1)
     sinusoid = ((intensity - fit.fitted) ** 2).mean(axis=1)
     unweighted = left.noise * np.where(left.whole > 0, sinusoid / left.whole, 1)
@@ -112,7 +118,8 @@ def seen(intensity: Array, fit: Fit, left: Leftover) -> NDArray[np.int8]:
     nearer = sinusoid - curve > SIGNIFICANT**2 * unweighted / samples
     others = left.whole - (1 + _UNCERTAIN) * left.noise
     conditions = {
-        FringeStatus.NO_FRINGE: (amplitude < np.maximum(SIGNIFICANT * error, rounding)) | nearer,
+        FringeStatus.NO_FRINGE: (amplitude < np.maximum(SIGNIFICANT * error, _rounding(intensity)))
+        | nearer,
         FringeStatus.OTHER_DEPTHS: others > OTHERS**2 * fringe_power(fit),
         FringeStatus.MIXED: others > MIXED**2 * fringe_power(fit),
     }
