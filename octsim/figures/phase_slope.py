@@ -48,7 +48,7 @@ def figure_12(slopes: xr.Dataset) -> Figure:
         predicted, color=BLACK, linestyle="-.", label=f"prediction {predicted:.2f} mrad/nm"
     )
     shown = np.concatenate((slopes["phase_slope"].values, slopes["ideal_phase_slope"].values))
-    shown = shown[np.isfinite(shown)]
+    shown = shown[np.isfinite(shown)] if np.isfinite(shown).any() else np.array([predicted])
     margin = 0.15 * max(float(np.ptp(shown)), 0.1)
     axes.set_ylim(shown.min() - margin, shown.max() + 3 * margin)
     axes.set_xlabel(label(diameter))

@@ -70,7 +70,8 @@ def ideal_phases(config: Config, spectra: Array, diameter: Array, wavenumber: Ar
     """Estimate the phases (D,) of ideal spectra cos(2ndk), (D, K).
 
     They are those of 1 − cos(2ndk), half a turn away: of opposite reflections, from whose phase a
-    fringe's order is counted; NaN where they are not resolved. Maximum likelihood, whose model they are not, has the prediction's.
+    fringe's order is counted; NaN where they are not resolved. Maximum likelihood, whose model they
+    are not, has the prediction's.
     """
     n_neuron, processing = config.scene.refractive_index.neuron, config.processing
     if processing.estimator == "maximum_likelihood":
