@@ -21,9 +21,9 @@ from octsim.phase.estimators.visible import (
 )
 from octsim.phase.fringe_status import WITH_PHASE, FringeStatus
 
-POOR = 5e-3
+POOR = 6e-3
 """Shape of the residual, over the fringe, from which the fit is poor; root mean squares. octsim's
-own spectra, of gaps to 100 nm, have up to 4.5e-3 (docs/estimators.md)."""
+own spectra, of gaps to 100 nm, have up to 5.3e-3 (docs/phases.md)."""
 FAR = 0.25
 """How far a fringe may be from its nominal depth, in oscillations over the band."""
 DRAWS = 32
