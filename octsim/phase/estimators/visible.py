@@ -131,9 +131,9 @@ def seen(intensity: Array, fit: Fit, left: Leftover) -> NDArray[np.int8]:
 def is_elsewhere(
     component: NDArray[np.int64], wavenumber: Array, depth: Array
 ) -> NDArray[np.bool_]:
-    """Return whether components (D,) are more than one from the optical depths (D,), µm."""
+    """Return whether components (D,) are more than one and a half from depths (D,), µm."""
     at = optical_depths(wavenumber)
-    away: NDArray[np.bool_] = np.abs(at[component] - depth) > at[1]
+    away: NDArray[np.bool_] = np.abs(at[component] - depth) > 1.5 * at[1]
     return away
 
 
