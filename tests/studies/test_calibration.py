@@ -237,6 +237,6 @@ def test_a_diameter_without_a_fringe_is_refused() -> None:
         }
     )
     with pytest.raises(
-        OctsimError, match=r"no phase at a diameter of 1 um \(no_fringe\): give the"
+        OctsimError, match=r"calibration: no phase .* 1\.33 um \(no_fringe\), and at 0"
     ):
         calibration(config)

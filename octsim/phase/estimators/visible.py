@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.base.errors import OctsimError
 from octsim.config.processing import Processing
 from octsim.phase.estimators.estimate import Array
 from octsim.phase.estimators.sinusoid import Fit, fit_sinusoid
@@ -177,3 +178,23 @@ def fringe_at(
         known = np.isin(status[part], WITH_PHASE)
         visibility[part] = np.where(known, amplitude / np.abs(fit.offset[:, 0]), np.nan)
     return Fringe(visibility, status)
+
+
+def require_fringe(
+    what: str, intensity: Array, wavenumber: Array, depth: Array, error: Array | float = 0.0
+) -> None:
+    """Refuse spectra for a purpose that needs a phase of each; see `fringe_at`.
+
+    Raises
+    ------
+    OctsimError
+        If one has none; with the first such depth, its status and the remedy.
+    """
+    status = fringe_at(intensity, wavenumber, depth, error).status
+    without = np.flatnonzero(~np.isin(status, WITH_PHASE))
+    if without.size:
+        one = FringeStatus(int(status[without[0]]))
+        raise OctsimError(
+            f"{what}: no phase at an optical depth of {depth[without[0]]:.4g} um "
+            f"({one.name.lower()}), and at {without.size - 1} others: {one.remedy}"
+        )

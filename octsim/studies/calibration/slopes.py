@@ -6,15 +6,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from octsim.base.errors import OctsimError
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 from octsim.phase.derivatives import Array, Derivative, derivative, stencil, wrapped
 from octsim.phase.estimators.series import series_phases
-from octsim.phase.estimators.visible import fringe_at
-from octsim.phase.fringe_status import FringeStatus
+from octsim.phase.estimators.visible import require_fringe
 from octsim.schemes.light import AccuracyStatus
 from octsim.studies.calibration.tolerances import PARAMETERS, moved, offsets_of
 from octsim.studies.sides import side_slopes
@@ -120,18 +118,6 @@ def observed(instrument: Instrument, diameters: Array, foci: Array) -> Spectra:
     return Spectra(np.stack(intensity), max(error), max(status))
 
 
-def _require_fringe(seen: Spectra, wavenumber: Array, diameter: float, depth: float) -> None:
-    """Refuse a diameter (µm) at whose optical depth (µm) its spectra have no fringe."""
-    middle = seen.intensity[len(seen.intensity) // 2, np.newaxis]
-    found = fringe_at(middle, wavenumber, np.array([depth]), seen.error)
-    status = FringeStatus(int(found.status[0]))
-    if not status.has_phase:
-        raise OctsimError(
-            f"calibration: no phase at a diameter of {diameter:.4g} um ({status.name.lower()}): "
-            f"{status.remedy}"
-        )
-
-
 def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
     """Return what a calibration holds at a diameter and its focus, both µm.
 
@@ -156,7 +142,8 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
         return observed(placed.instrument, diameters, np.full(sides.size, focus + placed.focus))
 
     fixed = observed(own, diameter + offsets, held)
-    _require_fringe(fixed, k, diameter, depth)
+    middle = fixed.intensity[offsets.size // 2, np.newaxis]
+    require_fringe("calibration", middle, k, np.array([depth]), fixed.error)
     following = observed(own, diameter + offsets, focus + bench.law_slope * offsets)
     focused = observed(own, at_rest, focus + offsets)
     bent = [pair(placed) for placed in bench.bent.placed]
