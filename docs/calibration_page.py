@@ -307,6 +307,9 @@ phase = octsim.phase_of("spectra.csv", calibrating(config), nominal_depth=depth)
 octsim.expansion(phase - phase[0], 1.4, calibration)
 ```
 
+Heed its warnings: a source that is not flat, or samples that are cut, bend phases by far more than
+their standard error ([phases.md](phases.md)).
+
 ## References
 
 - T. Akkin, D. P. Davé, T. E. Milner, H. G. Rylander III, Detection of neural activity using

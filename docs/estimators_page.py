@@ -178,7 +178,8 @@ Those without a phase give predicted_phase_slope · ∂d̂/∂d. `c` is `process
 the mean, the mean weighted by the window, or a polynomial fitted with these weights. Weights of
 `sinusoid` are equal, or those of shot noise, 1/(fitted intensity + read noise²).
 `sinusoid: {{envelope: common}}` takes the polynomials of a series' mean for all of it: for phases
-over time at one diameter.
+over time at one diameter. How well a phase of one spectrum is known, and when there is none, is in
+[phases.md](phases.md).
 
 ## Slopes
 

@@ -167,6 +167,7 @@ _RUN = (
         "fourier", "octsim.stages.fourier:fourier",
         "Transform the spectra",
         reads=("processing",), after=("spectra",), job="phase_slope",
+        doubts="octsim.stages.fourier:doubts",
         figures=(
             Figure("figure_9", "octsim.figures.fourier:figure_9",
                    "Fourier transform of a spectrum"),

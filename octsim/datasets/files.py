@@ -175,7 +175,7 @@ def _checked(
 
 
 def flags(
-    codes: type[IntEnum], values: NDArray[np.int64]
+    codes: type[IntEnum], values: NDArray[np.integer[Any]]
 ) -> tuple[NDArray[np.int8], dict[str, Any]]:
     """Return the values of an enumeration with the CF attributes that name them."""
     members = list(codes)

@@ -16,6 +16,11 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "field_amplitude": ("1", "magnitude of the field at the middle of the band"),
     "field_phase": ("rad", "phase of the field at the middle of the band, in (-pi, pi]"),
     "focus": ("um", "height of the focus above the glass"),
+    "fringe_status": ("1", "whether the spectrum has a fringe of the diameter, or why not"),
+    "fringe_visibility": (
+        "1",
+        "amplitude of that fringe over its offset, at the middle of the band",
+    ),
     "fraction": ("1", "height of the focus over the diameter"),
     "ideal_component": ("1", "strongest component for a spectrum cos(2ndk)"),
     "ideal_phase_slope_standard_deviation": (

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from octsim.figures.phase_slope import draw_components
 from octsim.figures.spectra import DIAMETER
-from octsim.figures.style import component_colour, label, title
+from octsim.figures.style import component_colour, label, tell_doubts, title
 
 
 def figure_9(fourier: xr.Dataset) -> Figure:
@@ -40,6 +40,7 @@ def figure_9(fourier: xr.Dataset) -> Figure:
     depth.set_xlabel(label(shown["depth"], "optical depth"))
     axes.set_title(title(fourier, f"Fourier transform, diameter {float(shown['diameter']):.4g} µm"))
     axes.legend()
+    tell_doubts(figure, fourier)
     return figure
 
 
@@ -64,6 +65,7 @@ def figure_10(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
     axes.set_ylabel(label(fourier["magnitude"], "magnitude (sum over the samples)"))
     axes.set_title(title(slopes, "Magnitude (solid where strongest)"))
     axes.legend()
+    tell_doubts(figure, slopes)
     return figure
 
 
@@ -78,4 +80,5 @@ def figure_11(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
     axes.set_ylabel(label(fourier["phase"], "phase, unwrapped"))
     axes.set_title(title(slopes, "Phase (solid where strongest)"))
     axes.legend()
+    tell_doubts(figure, slopes)
     return figure

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from octsim.figures.style import BLACK, GREEN, component_colour, label, title
+from octsim.figures.style import BLACK, GREEN, component_colour, label, tell_doubts, title
 
 _MARKERS = ".x+1234"
 
@@ -48,10 +48,12 @@ def figure_12(slopes: xr.Dataset) -> Figure:
         predicted, color=BLACK, linestyle="-.", label=f"prediction {predicted:.2f} mrad/nm"
     )
     shown = np.concatenate((slopes["phase_slope"].values, slopes["ideal_phase_slope"].values))
+    shown = shown[np.isfinite(shown)] if np.isfinite(shown).any() else np.array([predicted])
     margin = 0.15 * max(float(np.ptp(shown)), 0.1)
     axes.set_ylim(shown.min() - margin, shown.max() + 3 * margin)
     axes.set_xlabel(label(diameter))
     axes.set_ylabel(label(slopes["phase_slope"], "phase slope"))
     axes.set_title(title(slopes, "Phase slope (solid where strongest)"))
     axes.legend(ncols=2)
+    tell_doubts(figure, slopes)
     return figure

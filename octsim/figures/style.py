@@ -1,6 +1,7 @@
 """One look for all figures: colour-blind safe, told apart in grey, units on every axis."""
 
 import json
+import textwrap
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
@@ -15,12 +16,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from octsim.base.files import whole
+from octsim.phase.fringe_status import doubts_of
 
 # Okabe and Ito's colours; the order keeps neighbours apart in lightness too.
 BLUE, ORANGE, GREEN, BLACK = "#0072B2", "#E69F00", "#009E73", "#000000"
 PURPLE, VERMILION, SKY = "#CC79A7", "#D55E00", "#56B4E9"
 # green is the ideal spectrum's, black the prediction's
 _COMPONENTS = (BLUE, ORANGE, PURPLE, VERMILION, SKY)
+_LETTERS = 110  # of a line below a figure
 _SYMBOLS = {"um": "µm", "um-1": "1/µm", "1": ""}
 _MANY = 5000
 _LOOK: Any = {
@@ -61,6 +64,16 @@ def label(variable: xr.DataArray, name: str | None = None) -> str:
 def title(dataset: xr.Dataset, text: str) -> str:
     """Title of a figure: what it shows, and of which run."""
     return f"{text} · run {json.loads(dataset.attrs['config'])['run']}"
+
+
+def tell_doubts(figure: Figure, dataset: xr.Dataset) -> None:
+    """Write below a figure which spectra have no fringe, or a doubtful one, and what to do."""
+    if "fringe_status" not in dataset:
+        return
+    said = doubts_of(dataset["fringe_status"].values, "diameters")
+    if said:
+        lines = [line for one in said for line in textwrap.wrap(one, _LETTERS)]
+        figure.supxlabel("\n".join(lines), color=VERMILION, fontsize=7)
 
 
 def save(figure: Figure, path: Path) -> None:

@@ -1,19 +1,23 @@
 """Phases of a run's spectra and of measured ones, by the estimator that the config names."""
 
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
-from octsim.base.errors import ConfigError
+from octsim.base.errors import ConfigError, DatasetError, OctsimWarning
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.optics.two_beams import predicted_phase_slope
-from octsim.phase.estimators import estimate
-from octsim.phase.estimators.estimate import Array, Estimate
+from octsim.phase.cut_samples import are_cut
+from octsim.phase.estimators import estimate, phases
+from octsim.phase.estimators.estimate import Array, Estimate, Phases
 from octsim.phase.estimators.likelihood import maximum_likelihood
-from octsim.phase.measured_spectra import read_spectra
+from octsim.phase.estimators.visible import unusable
+from octsim.phase.fringe_status import FringeStatus, doubts_of
+from octsim.phase.measured_spectra import Raw, even, read_raw
 
 BEST = Processing.model_validate(
     {"estimator": "sinusoid", "depth": "peak", "sinusoid": {"depth": "fitted", "weights": "shot"}}
@@ -21,7 +25,12 @@ BEST = Processing.model_validate(
 """What measured spectra are processed by, unless something else is asked for."""
 
 
-EstimatorOf = Callable[[Array, Array], Estimate]
+LARGEST = 1e30
+"""Intensity above which a value stands for none, as the 9.97e36 of netCDF."""
+_OUTLYING = 1e6
+_NEARLY_ALL = 0.99
+
+EstimatorOf = Callable[[Array, Array], Phases]
 """From spectra (D, K) and their diameters (D,), µm, to phases; each spectrum by itself."""
 
 
@@ -42,17 +51,17 @@ def estimator_of(config: Config, foci: Array) -> EstimatorOf:
     processing, k = config.processing, config.spectrum.wavenumbers()
     n_neuron = config.scene.refractive_index.neuron
     if processing.estimator == "fft" or np.isnan(foci).any():
-        return lambda _, diameter: Estimate(*np.full((2, diameter.size), np.nan))
+        return lambda _, diameter: Phases(*np.full((2, diameter.size), np.nan))
     if processing.estimator != "maximum_likelihood":
-        return lambda spectra, diameter: estimate(spectra, k, n_neuron * diameter, processing)
+        return lambda spectra, diameter: phases(spectra, k, n_neuron * diameter, processing)
     # here, as a run of any other estimator needs no tracing any more
     from octsim.phase.modelled_spectra import model_of_sweep
 
     model, predicted = model_of_sweep(config, foci), predicted_phase_slope(n_neuron, k[0], k[-1])
 
-    def likeliest(spectra: Array, _: Array) -> Estimate:
+    def likeliest(spectra: Array, _: Array) -> Phases:
         found = maximum_likelihood(spectra, model, processing.read_noise)
-        return Estimate(predicted * found, n_neuron * found)
+        return Phases(predicted * found, n_neuron * found)
 
     return likeliest
 
@@ -61,12 +70,19 @@ def ideal_phases(config: Config, spectra: Array, diameter: Array, wavenumber: Ar
     """Estimate the phases (D,) of ideal spectra cos(2ndk), (D, K).
 
     They are those of 1 − cos(2ndk), half a turn away: of opposite reflections, from whose phase a
-    fringe's order is counted. Maximum likelihood, whose model they are not, has the prediction's.
+    fringe's order is counted; NaN where they are not resolved. Maximum likelihood, whose model they
+    are not, has the prediction's.
     """
     n_neuron, processing = config.scene.refractive_index.neuron, config.processing
     if processing.estimator == "maximum_likelihood":
         return predicted_phase_slope(n_neuron, wavenumber[0], wavenumber[-1]) * diameter
-    return estimate(1 - spectra, wavenumber, n_neuron * diameter, processing).phase
+    depth, found = n_neuron * diameter, np.full(diameter.size, np.nan)
+    resolved = unusable(spectra, wavenumber, depth) != FringeStatus.NOT_RESOLVED
+    if resolved.any():
+        found[resolved] = phases(
+            1 - spectra[resolved], wavenumber, depth[resolved], processing
+        ).phase
+    return found
 
 
 def phase_of(
@@ -89,7 +105,13 @@ def phase_of(
     Returns
     -------
     Estimate
-        Phase at the middle of the band (rad, wrapped) and optical depth (µm) of each spectrum.
+        Phase at the middle of the band (rad, wrapped) and optical depth (µm) of each spectrum, and
+        how well they are known; NaN where there is no fringe.
+
+    Warns
+    -----
+    OctsimWarning
+        If the status of a spectrum is other than visible: a line for each status, with its remedy.
 
     Raises
     ------
@@ -121,6 +143,33 @@ def phase_of(
             "processing.depth: 'nominal' given, but measured spectra have no diameter; give "
             "'peak' or a length, or pass nominal_depth"
         )
-    intensity, k = read_spectra(source)
+    raw = read_raw(source)
+    intensity, k = even(*raw)  # which refuses what is not finite
+    require_sensible(raw)
+    cut = are_cut(np.asarray(raw.intensity, float))  # before they were interpolated
     nominal = np.full(intensity.shape[0], np.nan if nominal_depth is None else nominal_depth)
-    return estimate(intensity, k, nominal, processing)
+    found = estimate(intensity, k, nominal, processing, cut)
+    for doubt in doubts_of(found.status, "spectra"):
+        warnings.warn(f"phase_of: {doubt}", OctsimWarning, stacklevel=2)
+    return found
+
+
+def require_sensible(raw: Raw) -> None:
+    """Refuse spectra with values that no detector gives, as those that stand for none.
+
+    Raises
+    ------
+    DatasetError
+        If a value is above `LARGEST`, or 1e6 times above nearly all others of its spectrum.
+    """
+    size = np.abs(np.asarray(raw.intensity, float))
+    usual = np.quantile(size, _NEARLY_ALL, axis=1, keepdims=True)
+    bad = (size > LARGEST) | ((size > _OUTLYING * usual) & (usual > 0))
+    if bad.any():
+        spectrum, sample = np.argwhere(bad)[0]
+        raise DatasetError(
+            f"{raw.name}: intensity of {raw.intensity[spectrum, sample]:.4g} in spectrum "
+            f"{spectrum}, sample {sample}, and {bad.sum() - 1} more like it, where "
+            f"{_NEARLY_ALL:.0%} of the spectrum are below {float(usual[spectrum, 0]):.4g}; mend "
+            "them or leave them out"
+        )

@@ -39,7 +39,23 @@ class Measured(NamedTuple):
     """Wavenumbers 2π/λ, (K,), 1/µm."""
 
 
+class Raw(NamedTuple):
+    """Spectra as they were measured, over wavenumbers in any spacing, rising or falling."""
+
+    wavenumber: Array
+    """Wavenumbers 2π/λ, (K,), 1/µm."""
+    intensity: Array
+    """Spectra, (D, K), in their own unit."""
+    name: str
+    """Where they are from, for what is said of them."""
+
+
 def read_spectra(source: str | Path | xr.Dataset) -> Measured:
+    """Read spectra, and bring them to evenly spaced wavenumbers; see `read_raw` and `even`."""
+    return even(*read_raw(source))
+
+
+def read_raw(source: str | Path | xr.Dataset) -> Raw:
     """Read spectra from netCDF or CSV, or take them from a dataset.
 
     Parameters
@@ -64,7 +80,7 @@ def read_spectra(source: str | Path | xr.Dataset) -> Measured:
     return _of_dataset(read_variables(path), str(path)) if is_netcdf(path) else _of_csv(path)
 
 
-def _of_dataset(dataset: xr.Dataset, name: str) -> Measured:
+def _of_dataset(dataset: xr.Dataset, name: str) -> Raw:
     axes = [axis for axis in AXES if axis in dataset.coords]
     if "intensity" not in dataset or not axes or axes[0] not in dataset["intensity"].dims:
         raise DatasetError(
@@ -79,7 +95,7 @@ def _of_dataset(dataset: xr.Dataset, name: str) -> Measured:
         )
     units = str(dataset[axes[0]].attrs.get("units", ""))
     along = np.asarray(dataset[axes[0]].values, float)
-    return even(_wavenumbers(along, axes[0], units, name), np.atleast_2d(spectra.values), name)
+    return Raw(_wavenumbers(along, axes[0], units, name), np.atleast_2d(spectra.values), name)
 
 
 def _problem(headings: Sequence[str]) -> str | None:
@@ -99,7 +115,7 @@ def _problem(headings: Sequence[str]) -> str | None:
     return None
 
 
-def _of_csv(path: Path) -> Measured:
+def _of_csv(path: Path) -> Raw:
     table = read_table(path, _problem)
     heading, *columns = [
         (text, _intensities(table, place, text))
@@ -117,7 +133,7 @@ def _of_csv(path: Path) -> Measured:
             f"{along[at]:g}; sort the rows, each once"
         )
     k = _wavenumbers(along, axis.name, axis.unit or "", str(path))
-    return even(k, np.array([values for _, values in columns]), str(path))
+    return Raw(k, np.array([values for _, values in columns]), str(path))
 
 
 def _nameless(table: Table, place: int) -> bool:

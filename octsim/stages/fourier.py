@@ -10,11 +10,14 @@ from numpy.typing import NDArray
 
 from octsim.config.models import Config
 from octsim.datasets.files import flags
-from octsim.datasets.layout import Coordinate, Layout
+from octsim.datasets.layout import Coordinate, Layout, filling
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.phase.by_config import estimator_of
+from octsim.phase.estimators.visible import Fringe, fringe_at, is_elsewhere
+from octsim.phase.fringe_status import WITH_PHASE, FringeStatus, doubts_of
 from octsim.phase.transform import fourier_components, optical_depths, rounding_level
+from octsim.schemes.light import AccuracyStatus
 from octsim.stages.workload import points_per_block
 
 
@@ -35,8 +38,9 @@ def fourier(config: Config, spectra: xr.Dataset) -> Stream:
     Returns
     -------
     Dataset
-        magnitude, phase and whether that is known (diameter, component), depth(component); and, of
-        another estimator than fft, estimated_phase and estimated_depth (diameter).
+        magnitude, phase and whether that is known (diameter, component), depth(component);
+        visibility and status of the fringe (diameter); and, of another estimator than fft,
+        estimated_phase and estimated_depth (diameter), NaN where there is no fringe.
     """
 
     def own(config: Config) -> dict[str, Coordinate]:
@@ -70,21 +74,49 @@ def _transformed(layout: Layout, stored: Stored) -> Iterator[Part]:
         intensity = part["intensity"].values
         components = fourier_components(intensity, at.config.processing)
         magnitude = np.abs(components)
+        fringe = _fringe(at.config, part, magnitude)
+        visible = np.isin(fringe.status, WITH_PHASE)
         status = _status(magnitude, rounding_level(intensity, at.config.processing))
         phase = np.where(status == PhaseStatus.KNOWN, np.angle(components), np.nan)
         variables: dict[str, Any] = {
             "magnitude": (dimensions, magnitude),
             "phase": (dimensions, phase),
             "phase_status": (dimensions, *flags(PhaseStatus, status)),
+            "fringe_visibility": ("diameter", fringe.visibility),
+            "fringe_status": ("diameter", *flags(FringeStatus, fringe.status)),
         }
         if estimates:
             if span.start == 0:
                 foci = stored.part(at, names=("focus",))["focus"].values
                 estimate = estimator_of(at.config, foci)
-            found = estimate(intensity, part["diameter"].values)
-            variables["estimated_phase"] = "diameter", found.phase
-            variables["estimated_depth"] = "diameter", found.depth
+            found = np.full((2, len(intensity)), np.nan)
+            if visible.any():
+                found[:, visible] = estimate(intensity[visible], part["diameter"].values[visible])
+            variables["estimated_phase"] = "diameter", found[0]
+            variables["estimated_depth"] = "diameter", found[1]
         yield Part(at, span.start, len(intensity), variables)
+
+
+def _fringe(config: Config, part: xr.Dataset, magnitude: NDArray[np.float64]) -> Fringe:
+    """Look for the fringe of spectra whose components' magnitudes (D, C) are known."""
+    k = config.spectrum.wavenumbers()
+    depth = config.scene.refractive_index.neuron * part["diameter"].values
+    controlled = part["accuracy_status"].values != AccuracyStatus.NOT_CONTROLLED
+    error = np.where(controlled, part["intensity_error"].values, 0.0)
+    found = fringe_at(part["intensity"].values, k, depth, error)
+    if not by_components(config):
+        return found
+    strongest = 1 + magnitude[:, 1:].argmax(axis=1)
+    elsewhere = np.isin(found.status, WITH_PHASE) & is_elsewhere(strongest, k, depth)
+    status = np.where(elsewhere, FringeStatus.OTHER_DEPTHS, found.status)
+    return Fringe(np.where(elsewhere, np.nan, found.visibility), status)
+
+
+def doubts(transformed: xr.Dataset) -> list[str]:
+    """Say, a line each, of which spectra the phase is not known, or to be doubted."""
+    status = transformed["fringe_status"].values
+    status = status[(status != filling(status.dtype)) & (status != FringeStatus.NO_SPECTRUM)]
+    return doubts_of(status, "diameters (fringe_status)")
 
 
 def _status(magnitude: NDArray[np.float64], level: NDArray[np.float64]) -> NDArray[np.int64]:

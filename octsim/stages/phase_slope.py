@@ -13,9 +13,15 @@ from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.optics.two_beams import ideal_spectra, predicted_phase_slope
 from octsim.phase.by_config import ideal_phases
+from octsim.phase.fringe_status import WITH_PHASE
 from octsim.phase.slopes import phase_slopes, slope_of
 from octsim.phase.transform import fourier_components
 from octsim.stages.fourier import block_points, by_components
+
+_OF_SLOPES = (
+    "mean_phase_slope", "phase_slope_standard_deviation", "standard_deviation_from_ideal",
+    "largest_deviation", "largest_deviation_diameter",
+)  # fmt: skip
 
 
 @Streamed
@@ -25,7 +31,7 @@ def phase_slope(config: Config, transformed: xr.Dataset) -> Stream:
     Returns
     -------
     Dataset
-        phase_slope, strongest_component and ideal_phase_slope (diameter),
+        phase_slope, strongest_component, fringe_status and ideal_phase_slope (diameter),
         component_phase_slope(diameter, component), predicted_phase_slope, and the thesis's summary
         figures as scalars.
     """
@@ -62,7 +68,11 @@ def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[
     """Return the slopes of some diameters of a part that holds their neighbours too."""
     inner = slice(before, before + span.stop - span.start)
     diameter, k = part["diameter"].values, config.spectrum.wavenumbers()
-    found = phase_slopes(diameter, part["magnitude"].values, part["phase"].values)
+    phase = part["phase"].values
+    if "fringe_status" in part:  # files of 0.3.0 and before don't have it
+        visible = np.isin(part["fringe_status"].values, WITH_PHASE)
+        phase = np.where(visible[:, np.newaxis], phase, np.nan)
+    found = phase_slopes(diameter, part["magnitude"].values, phase)
     n_neuron = config.scene.refractive_index.neuron
     spectra = ideal_spectra(n_neuron, diameter, k)
     ideal = fourier_components(spectra, config.processing)
@@ -71,7 +81,9 @@ def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[
     if not by_components(config):
         slope = slope_of(diameter, part["estimated_phase"].values)
         ideal_slope = slope_of(diameter, ideal_phases(config, spectra, diameter, k))
+    fringe = {name: part[name].isel(diameter=inner) for name in ("fringe_status",) if name in part}
     return {
+        **{name: (one.dims, one.values, one.attrs) for name, one in fringe.items()},
         "phase_slope": ("diameter", slope[inner]),
         "strongest_component": ("diameter", found.component[inner]),
         "component_phase_slope": (("diameter", "component"), found.by_component[inner]),
@@ -86,27 +98,33 @@ def _figures(
     phase_slope: NDArray[np.float64],
     ideal_phase_slope: NDArray[np.float64],
 ) -> dict[str, Any]:
-    """Return the thesis's summary figures of a sweep."""
+    """Return the thesis's summary figures of a sweep, over the diameters whose slope is known."""
     k = config.spectrum.wavenumbers()
     predicted = predicted_phase_slope(config.scene.refractive_index.neuron, k[0], k[-1])
-    deviation = phase_slope - predicted
-    largest = int(np.abs(deviation).argmax())
-    return {
+    known = np.isfinite(phase_slope)
+    ideal = {
         "predicted_phase_slope": predicted,
-        "mean_phase_slope": phase_slope.mean(),
-        "phase_slope_standard_deviation": phase_slope.std(),
         "mean_ideal_phase_slope": ideal_phase_slope.mean(),
         "ideal_phase_slope_standard_deviation": ideal_phase_slope.std(),
-        "standard_deviation_from_ideal": (phase_slope - ideal_phase_slope).std(),
-        "largest_deviation": deviation[largest],
-        "largest_deviation_diameter": diameter[largest],
     }
+    if not known.any():
+        return ideal | dict.fromkeys(_OF_SLOPES, np.nan)
+    slope, away = phase_slope[known], (phase_slope - ideal_phase_slope)[known]
+    deviation = slope - predicted
+    largest = int(np.abs(deviation).argmax())
+    values = (slope.mean(), slope.std(), away.std(), deviation[largest], diameter[known][largest])
+    return ideal | dict(zip(_OF_SLOPES, values, strict=True))
+
+
+_NONE = "no phase slope: no spectrum has a fringe (fringe_status in fourier.nc says why)"
 
 
 def summary(slopes: xr.Dataset) -> str:
     """Return in one line what a run found."""
     means = slopes["mean_phase_slope"].values
     if means.ndim:
+        if np.isnan(means).all():
+            return _NONE
         return (
             f"mean phase slope over the diameters {np.nanmin(means):.3f} to "
             f"{np.nanmax(means):.3f} mrad/nm over {means.size} combinations"
@@ -115,9 +133,13 @@ def summary(slopes: xr.Dataset) -> str:
         "mean_phase_slope", "phase_slope_standard_deviation", "predicted_phase_slope",
         "largest_deviation", "largest_deviation_diameter",
     )  # fmt: skip
+    known = np.isfinite(slopes["phase_slope"].values)
+    if not known.any():
+        return _NONE
+    some = "" if known.all() else f" that have one, {known.sum()} of {known.size}"
     mean, scatter, predicted, deviation, diameter = (float(slopes[name]) for name in figures)
     return (
-        f"phase slope {mean:.3f} ± {scatter:.3f} mrad/nm (mean ± scatter over the diameters), "
-        f"prediction {predicted:.3f}; largest deviation from it {deviation:+.3f} at "
-        f"{diameter:.4g} um"
+        f"phase slope {mean:.3f} ± {scatter:.3f} mrad/nm (mean ± scatter over the "
+        f"diameters{some}), prediction {predicted:.3f}; largest deviation from it "
+        f"{deviation:+.3f} at {diameter:.4g} um"
     )

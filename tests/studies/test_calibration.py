@@ -227,3 +227,16 @@ def test_the_table_explains_itself_is_read_back_and_drawn(
 def test_a_law_that_is_needed_is_asked_for() -> None:
     with pytest.raises(OctsimError, match=r"sweep.focus: 'law' given"):
         calibration(load_config())
+
+
+def test_a_diameter_without_a_fringe_is_refused() -> None:
+    config = load_config(
+        {
+            "scene": {"refractive_index": {"neuron": 1.33}},
+            "sweep": {"focus": {"slope": 0.58, "intercept": "69 nm"}},
+        }
+    )
+    with pytest.raises(
+        OctsimError, match=r"calibration: no phase .* 1\.33 um \(no_fringe\), and at 0"
+    ):
+        calibration(config)

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.config.processing import Processing
-from octsim.phase.estimators.estimate import Array, Estimate, middle
+from octsim.phase.estimators.estimate import Array, Phases, middle
 
 _BLOCKS = 64
 """Fewest means of neighbouring samples that stand for a spectrum, where it has as many."""
@@ -13,7 +13,7 @@ _NEAR = 0.5
 """How far the oscillation's depth may be from the one expected, over that."""
 
 
-def esprit(intensity: Array, wavenumber: Array, depth: Array, processing: Processing) -> Estimate:
+def esprit(intensity: Array, wavenumber: Array, depth: Array, processing: Processing) -> Phases:
     r"""Find the oscillation among a few exponentials by the rotational invariance of their span.
 
     .. math:: I_j = \sum_m a_m p_m^j, \quad U_{\uparrow} \Psi = U_{\downarrow}, \quad
@@ -40,7 +40,7 @@ def esprit(intensity: Array, wavenumber: Array, depth: Array, processing: Proces
     for one in np.unique(size):
         rows = size == one
         found[:, rows] = _oscillation(intensity[rows], wavenumber, depth[rows], processing, one)
-    return Estimate(*found)
+    return Phases(*found)
 
 
 def _block_sizes(wavenumber: Array, depth: Array) -> NDArray[np.int64]:
@@ -53,7 +53,7 @@ def _block_sizes(wavenumber: Array, depth: Array) -> NDArray[np.int64]:
 
 def _oscillation(
     intensity: Array, wavenumber: Array, depth: Array, processing: Processing, size: int
-) -> Estimate:
+) -> Phases:
     """Find the oscillation of spectra whose means are of as many samples."""
     means, at, within = _block_means(intensity, wavenumber, size)
     poles = _poles(means, processing.esprit.poles)
@@ -71,7 +71,7 @@ def _oscillation(
     found = near[rows, chosen]
     # a mean over neighbours turns an exponential that grows or falls
     turn = np.exp(np.multiply.outer(growth[rows, chosen], within)).mean(axis=1)
-    return Estimate(
+    return Phases(
         np.where(found, np.angle(amplitude[rows, chosen] / turn), np.nan),
         np.where(found, depths[rows, chosen], np.nan),
     )

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-class Estimate(NamedTuple):
+class Phases(NamedTuple):
     """Phase and depth of D spectra.
 
     The oscillation is cos(2 z (k − k_mid) + phase), with k_mid the middle of the band: the phase
@@ -19,6 +19,31 @@ class Estimate(NamedTuple):
     """Phase at the middle of the band, (D,), rad; wrapped, or not."""
     depth: Array
     """Optical depth z, (D,), µm."""
+
+
+class Estimate(NamedTuple):
+    """Phase and depth of D spectra, and how well they are known.
+
+    Where a spectrum has no fringe all but residual and status are NaN.
+    """
+
+    phase: Array
+    """Phase at the middle of the band, (D,), rad; wrapped, or not."""
+    depth: Array
+    """Optical depth z, (D,), µm."""
+    residual: Array
+    """Root mean square of what a sinusoid leaves of the spectrum, (D,), in its unit."""
+    visibility: Array
+    """Amplitude of the fringe over its offset, in the middle of the band, (D,)."""
+    snr: Array
+    """Signal-to-noise ratio, (D,), dB, as `octsim.phase.noise.signal_to_noise`: the noise is what
+    the residual has between neighbouring samples, of whatever source."""
+    phase_standard_error: Array
+    """Standard error of the phase by that noise alone, (D,), rad."""
+    depth_standard_error: Array
+    """Standard error of the depth by that noise alone, (D,), µm; NaN where the depth is given."""
+    status: NDArray[np.int8]
+    """`octsim.phase.fringe_status.FringeStatus` of each, (D,)."""
 
 
 def middle(wavenumber: Array) -> float:

@@ -3,14 +3,14 @@
 import numpy as np
 
 from octsim.config.processing import Processing
-from octsim.phase.estimators.estimate import Array, Estimate, at_depth, middle
+from octsim.phase.estimators.estimate import Array, Phases, at_depth, middle
 from octsim.phase.transform import fourier_components, optical_depths, prepared
 
 _FINER = 32
 """How many times finer zeros make the components, where the highest peak is looked for."""
 
 
-def fft(intensity: Array, wavenumber: Array, _: Array, processing: Processing) -> Estimate:
+def fft(intensity: Array, wavenumber: Array, _: Array, processing: Processing) -> Phases:
     r"""Take the phase of the strongest component (thesis §5), brought to the middle of the band.
 
     .. math:: \phi = \arg \sum_j w_j (I_j - c) e^{-2\pi i j m / K} + 2 z_m (k_{mid} - k_{min}),
@@ -22,12 +22,12 @@ def fft(intensity: Array, wavenumber: Array, _: Array, processing: Processing) -
     strongest = 1 + np.abs(components[:, 1:]).argmax(axis=1)
     depth = optical_depths(wavenumber)[strongest]
     value = np.take_along_axis(components, strongest[:, np.newaxis], axis=1)[:, 0]
-    return Estimate(np.angle(value) + 2 * depth * (middle(wavenumber) - wavenumber[0]), depth)
+    return Phases(np.angle(value) + 2 * depth * (middle(wavenumber) - wavenumber[0]), depth)
 
 
 def zero_padded(
     intensity: Array, wavenumber: Array, depth: Array, processing: Processing
-) -> Estimate:
+) -> Phases:
     r"""Take the phase of the Fourier transform at a given depth.
 
     .. math:: \phi = \arg \sum_j w_j (I_j - c) e^{-2iz(k_j - k_{mid})}
@@ -47,7 +47,7 @@ def zero_padded(
         Its centre and window.
     """
     value = at_depth(prepared(intensity, processing), wavenumber, depth)
-    return Estimate(np.angle(value), depth)
+    return Phases(np.angle(value), depth)
 
 
 def peak_depths(intensity: Array, wavenumber: Array, processing: Processing) -> Array:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from octsim.config.processing import Processing
-from octsim.phase.estimators.estimate import Array, Estimate, at_depth, middle
+from octsim.phase.estimators.estimate import Array, Phases, at_depth, middle
 from octsim.phase.transform import prepared
 
 _DEGREE = 4
@@ -13,7 +13,7 @@ _CENTRINGS = 2  # the second around what the first found
 _REAL = 1e-6
 
 
-def fringe(intensity: Array, wavenumber: Array, depth: Array, processing: Processing) -> Estimate:
+def fringe(intensity: Array, wavenumber: Array, depth: Array, processing: Processing) -> Phases:
     r"""Locate the extremum nearest to the middle of the band; its order gives the depth.
 
     .. math:: 2 z k_e + \pi = m \pi, \quad z = \frac{(m - 1) \pi}{2 k_e}, \quad \phi = 2 z k_{mid}
@@ -49,7 +49,7 @@ def fringe(intensity: Array, wavenumber: Array, depth: Array, processing: Proces
     parity = (half_turn + 1) % 2
     order = parity + 2 * np.round((2 * depth * at / np.pi - parity) / 2)
     found = order * np.pi / (2 * at)
-    return Estimate(2 * found * k_mid + np.pi, found)
+    return Phases(2 * found * k_mid + np.pi, found)
 
 
 def _extremum(wavenumber: Array, spectrum: Array, start: float, reach: float) -> float:

@@ -3,14 +3,14 @@
 import numpy as np
 
 from octsim.config.processing import Processing
-from octsim.phase.estimators.estimate import Array, Estimate, middle
+from octsim.phase.estimators.estimate import Array, Phases, middle
 from octsim.phase.transform import optical_depths, prepared
 
 _ZEROS = 8
 """How many times as many samples are transformed, the rest of them zeros."""
 
 
-def hilbert(intensity: Array, wavenumber: Array, depth: Array, processing: Processing) -> Estimate:
+def hilbert(intensity: Array, wavenumber: Array, depth: Array, processing: Processing) -> Phases:
     r"""Fit a line to the phase of the analytic signal over the band.
 
     .. math:: a(k) = 2\int_{(1-b)z}^{(1+b)z} \hat I(z') e^{2iz'k} dz', \quad
@@ -39,11 +39,11 @@ def hilbert(intensity: Array, wavenumber: Array, depth: Array, processing: Proce
     return _line(np.unwrap(np.angle(signal), axis=1), np.abs(signal) ** 2, wavenumber)
 
 
-def _line(phase: Array, weights: Array, wavenumber: Array) -> Estimate:
+def _line(phase: Array, weights: Array, wavenumber: Array) -> Phases:
     """Fit lines to phases (D, K) by weighted least squares: value at the middle, half the slope."""
     x = wavenumber - middle(wavenumber)
     total = weights.sum(axis=1)
     mean_x, mean_phase = (weights * x).sum(axis=1) / total, (weights * phase).sum(axis=1) / total
     from_mean = x - mean_x[:, np.newaxis]
     slope = (weights * from_mean * phase).sum(axis=1) / (weights * from_mean**2).sum(axis=1)
-    return Estimate(mean_phase - slope * mean_x, slope / 2)
+    return Phases(mean_phase - slope * mean_x, slope / 2)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from octsim.config.processing import Processing
-from octsim.phase.estimators import estimate
+from octsim.phase.estimators.by_name import phases
 from octsim.phase.estimators.estimate import Array
 from octsim.phase.transform import fourier_components
 
@@ -36,4 +36,4 @@ def series_phases(
         components = fourier_components(intensity, processing)
         strongest = 1 + int(np.abs(components[:, 1:]).sum(axis=0).argmax())
         return np.angle(components[:, strongest])
-    return estimate(intensity, wavenumber, np.full(len(intensity), depth), processing).phase
+    return phases(intensity, wavenumber, np.full(len(intensity), depth), processing).phase

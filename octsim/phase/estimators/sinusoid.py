@@ -1,6 +1,6 @@
 """The phase of a least-squares sinusoid, by variable projection."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from octsim.base.errors import OctsimError
 from octsim.config.processing import Processing
 from octsim.config.processing import Sinusoid as Options
-from octsim.phase.estimators.estimate import Array, Estimate, middle, oscillation, place, product
+from octsim.phase.estimators.estimate import Array, Phases, middle, oscillation, place, product
 
 DARKEST = 0.02
 """Least intensity that a weight is made of, over the mean: noise may fit less than none."""
@@ -19,7 +19,8 @@ STEPS = 10
 """Most Gauss–Newton steps of the depth."""
 _REACH = 0.1  # of the depth, that one step may move it
 _ONE_SERIES = 0.02  # spread of depths, over their mean, of a series at one diameter
-_CHUNK = 256  # spectra at a time: beyond that the columns leave the cache
+CHUNK = 256
+"""Spectra at a time: beyond that the columns leave the cache."""
 
 
 Weigh = Callable[[Array, Array, float], Array]
@@ -35,7 +36,68 @@ class Envelope(NamedTuple):
     """Of the oscillation e^{2iz(k − k_mid)}, (K, Q)."""
 
 
-def sinusoid(intensity: Array, wavenumber: Array, depth: Array, processing: Processing) -> Estimate:
+class Fit(NamedTuple):
+    """Sinusoids fitted to D spectra, with P linear parameters of the offset and N in all."""
+
+    amplitude: NDArray[np.complex128]
+    """Of the oscillation and its slopes, (D, Q)."""
+    offset: Array
+    """Below it, (D, P)."""
+    depth: Array
+    """Optical depths z, (D,), µm."""
+    below: Array
+    """The fitted offset over the band, (D, K)."""
+    fitted: Array
+    """The fitted spectra, (D, K)."""
+    root: Array
+    """Square roots of the weights, (D, K)."""
+    triangle: Array
+    """R of the weighted columns, (D, N, N): the covariance of the parameters, for a noise of 1 in
+    the weighted residual, is R⁻¹ R⁻ᵀ (Golub and Van Loan 2013, §5.3)."""
+    columns: tuple[int, int, int]
+    """Places of the first cosine, its sine and the depth among the parameters; −1 if it is held."""
+
+    @property
+    def phase(self) -> Array:
+        """Phases, (D,), rad."""
+        return np.angle(self.amplitude[:, 0])
+
+    def unit_errors(self) -> tuple[Array, Array, Array]:
+        """Return standard errors of amplitude, phase (rad) and depth (µm), each (D,).
+
+        They are those of a noise of 1 in the weighted residual. A depth that is held has NaN.
+        """
+        cosine, sine, depth = self.columns
+        # the amplitude is cosine's less i times sine's parameter
+        turn = self.amplitude[:, 0] / np.abs(self.amplitude[:, 0])
+        along, across = np.zeros((2, *self.triangle.shape[:2]))
+        along[:, cosine], along[:, sine] = turn.real, -turn.imag
+        across[:, cosine], across[:, sine] = -turn.imag, -turn.real
+        amplitude = self._spread(along)
+        phase = self._spread(across) / np.abs(self.amplitude[:, 0])
+        if depth < 0:
+            return amplitude, phase, np.full_like(phase, np.nan)
+        moved = np.zeros_like(along)
+        moved[:, depth] = 1
+        return amplitude, phase, self._spread(moved)
+
+    def _spread(self, direction: Array) -> Array:
+        """Return the standard errors (D,) of sums of the parameters, (D, N)."""
+        transposed = np.swapaxes(self.triangle, 1, 2)
+        solved = np.linalg.solve(transposed, direction[..., np.newaxis])[..., 0]
+        return np.asarray(np.sqrt((solved**2).sum(axis=1)))
+
+
+def sinusoid(intensity: Array, wavenumber: Array, depth: Array, processing: Processing) -> Phases:
+    """Fit a sinusoid on polynomials, and give its phase and depth; see `fit_sinusoid`."""
+    fits = fit_sinusoid(intensity, wavenumber, depth, processing)
+    phases, depths = zip(*((fit.phase, fit.depth) for fit in fits), strict=True)
+    return Phases(np.concatenate(phases), np.concatenate(depths))
+
+
+def fit_sinusoid(
+    intensity: Array, wavenumber: Array, depth: Array, processing: Processing
+) -> Iterator[Fit]:
     r"""Fit a sinusoid on polynomials by weighted least squares.
 
     .. math:: I(k) = \sum_{j \le p} o_j x^j
@@ -57,6 +119,11 @@ def sinusoid(intensity: Array, wavenumber: Array, depth: Array, processing: Proc
     processing : Processing
         Its ``sinusoid`` section, and the read noise.
 
+    Yields
+    ------
+    Fit
+        Of `CHUNK` spectra each, in their order.
+
     Raises
     ------
     OctsimError
@@ -66,13 +133,9 @@ def sinusoid(intensity: Array, wavenumber: Array, depth: Array, processing: Proc
     envelope = _polynomials(wavenumber, options)
     if options.envelope == "common":
         envelope = _common(intensity, wavenumber, depth, processing)
-    begins = range(0, depth.size, _CHUNK)
-    parts = [slice(begin, begin + _CHUNK) for begin in begins]
-    found = [_fit(intensity[p], wavenumber, depth[p], options, variance, envelope) for p in parts]
-    return Estimate(
-        np.concatenate([np.angle(amplitude[:, 0]) for amplitude, _, _ in found]),
-        np.concatenate([depths for _, _, depths in found]),
-    )
+    for begin in range(0, depth.size, CHUNK):
+        part = slice(begin, begin + CHUNK)
+        yield _fit(intensity[part], wavenumber, depth[part], options, variance, envelope)
 
 
 def _polynomials(wavenumber: Array, options: Options) -> Envelope:
@@ -93,11 +156,9 @@ def _common(intensity: Array, wavenumber: Array, depth: Array, processing: Proce
         )
     powers, mean = _polynomials(wavenumber, options), intensity.mean(axis=0, keepdims=True)
     # the noise of a mean is less, but in the same proportion from sample to sample
-    amplitude, offset, _ = _fit(
-        mean, wavenumber, mean_depth, options, processing.read_noise**2, powers
-    )
-    shape = powers.amplitude @ (amplitude[0] / amplitude[0, 0])
-    return Envelope((powers.offset @ offset[0])[:, np.newaxis], shape[:, np.newaxis])
+    one = _fit(mean, wavenumber, mean_depth, options, processing.read_noise**2, powers)
+    shape = powers.amplitude @ (one.amplitude[0] / one.amplitude[0, 0])
+    return Envelope((powers.offset @ one.offset[0])[:, np.newaxis], shape[:, np.newaxis])
 
 
 def _shot(fitted: Array, intensity: Array, variance: float) -> Array:
@@ -122,8 +183,8 @@ def _fit(
     options: Options,
     variance: float,
     envelope: Envelope,
-) -> tuple[NDArray[np.complex128], Array, Array]:
-    """Fit amplitudes (D, Q), offsets (D, P) and, if that is asked for, depths (D,)."""
+) -> Fit:
+    """Fit amplitudes, offsets and, if that is asked for, depths."""
     fit = _FITS[options.depth]
     return fit(intensity, wavenumber, depth, envelope, _WEIGHTS[options.weights], variance)
 
@@ -135,19 +196,21 @@ def _held(
     envelope: Envelope,
     weigh: Weigh,
     variance: float,
-) -> tuple[NDArray[np.complex128], Array, Array]:
+) -> Fit:
     """Fit at held depths: complex amplitudes, whose slope makes up for a depth that is off."""
     columns = _columns(_waves(wavenumber, depth, envelope), envelope)
-    found = _solve(columns, intensity, np.ones_like(intensity))
     root = np.ones_like(intensity)
+    found, triangle = _solve(columns, intensity, root)
     for _ in range(ROUNDS):
         last, root = root, weigh(_sum(columns, found), intensity, variance)
         if np.array_equal(root, last):
             break
-        found = _solve(columns, intensity, root)
+        found, triangle = _solve(columns, intensity, root)
     offsets, cosines = envelope.offset.shape[1], envelope.amplitude.shape[1]
     cos, sin = found[:, offsets : offsets + cosines], found[:, offsets + cosines :]
-    return cos - 1j * sin, found[:, :offsets], depth
+    places = offsets, offsets + cosines, -1
+    return Fit(cos - 1j * sin, found[:, :offsets], depth, *_parts(columns, found, offsets), root,
+               triangle, places)  # fmt: skip
 
 
 def _fitted(
@@ -157,7 +220,7 @@ def _fitted(
     envelope: Envelope,
     weigh: Weigh,
     variance: float,
-) -> tuple[NDArray[np.complex128], Array, Array]:
+) -> Fit:
     """Fit depths too: amplitudes of one phase, as a slope of the phase is the depth's.
 
     The step of a depth is the part of one more column, the derivative to it, in a fit of all: all
@@ -165,9 +228,10 @@ def _fitted(
     """
     x = 2 * (wavenumber - middle(wavenumber))
     offsets = envelope.offset.shape[1]
-    root = np.ones_like(intensity)
-    amplitude, offset, _ = _held(intensity, wavenumber, depth, envelope, weigh, variance)
+    weights = np.ones_like(intensity)
+    amplitude = _held(intensity, wavenumber, depth, envelope, weigh, variance).amplitude
     for _ in range(STEPS):
+        root = weights
         turn = amplitude[:, :1] / np.abs(amplitude[:, :1])
         waves = _waves(wavenumber, depth, envelope)
         cos, sin = waves.real, waves.imag  # by their parts, as in `product`
@@ -181,13 +245,15 @@ def _fitted(
         columns = np.concatenate(
             [_columns(waves[..., :1], envelope), along, moved[..., np.newaxis]], axis=2
         )
-        found = _solve(columns, intensity, root)
+        found, triangle = _solve(columns, intensity, root)
         first = found[:, offsets, np.newaxis] - 1j * found[:, offsets + 1, np.newaxis]
         amplitude = np.concatenate([first, turn * found[:, offsets + 2 : -1]], axis=1)
-        offset, step = found[:, :offsets], found[:, -1]
-        root = weigh(_sum(columns, found), intensity, variance)
+        step = found[:, -1]
+        weights = weigh(_sum(columns, found), intensity, variance)
         depth = depth + np.clip(step, -_REACH * depth, _REACH * depth)
-    return amplitude, offset, depth
+    places = offsets, offsets + 1, columns.shape[2] - 1
+    return Fit(amplitude, found[:, :offsets], depth, *_parts(columns, found, offsets), root,
+               triangle, places)  # fmt: skip
 
 
 _FITS = {"held": _held, "fitted": _fitted}
@@ -210,9 +276,13 @@ def _sum(columns: Array, found: Array) -> Array:
     return fitted
 
 
-def _solve(columns: Array, intensity: Array, root: Array) -> Array:
-    """Solve weighted least squares for spectra (D, K) and columns (D, K, N): (D, N)."""
+def _parts(columns: Array, found: Array, offsets: int) -> tuple[Array, Array]:
+    """Return the offsets (D, K) and the whole spectra (D, K) that parameters stand for."""
+    return _sum(columns[..., :offsets], found[:, :offsets]), _sum(columns, found)
+
+
+def _solve(columns: Array, intensity: Array, root: Array) -> tuple[Array, Array]:
+    """Solve weighted least squares for spectra (D, K) and columns (D, K, N): (D, N), and R."""
     orthogonal, triangle = np.linalg.qr(columns * root[..., np.newaxis])
     projected = np.swapaxes(orthogonal, 1, 2) @ (intensity * root)[..., np.newaxis]
-    found: Array = np.linalg.solve(triangle, projected)[..., 0]
-    return found
+    return np.linalg.solve(triangle, projected)[..., 0], triangle

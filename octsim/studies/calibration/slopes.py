@@ -12,6 +12,7 @@ from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 from octsim.phase.derivatives import Array, Derivative, derivative, stencil, wrapped
 from octsim.phase.estimators.series import series_phases
+from octsim.phase.estimators.visible import require_fringe
 from octsim.schemes.light import AccuracyStatus
 from octsim.studies.calibration.tolerances import PARAMETERS, moved, offsets_of
 from octsim.studies.sides import side_slopes
@@ -125,6 +126,11 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
     dict
         By the names of the dataset's variables; ``sensitivity`` and ``sensitivity_error`` of each
         of `PARAMETERS`, (P,), in mrad/nm per unit of the parameter.
+
+    Raises
+    ------
+    OctsimError
+        If the spectra have no fringe of the diameter.
     """
     own, step, k = bench.instrument, bench.step, bench.instrument.wavenumber
     depth = float(own.nominal_depth(np.array(diameter)))
@@ -136,6 +142,8 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
         return observed(placed.instrument, diameters, np.full(sides.size, focus + placed.focus))
 
     fixed = observed(own, diameter + offsets, held)
+    middle = fixed.intensity[offsets.size // 2, np.newaxis]
+    require_fringe("calibration", middle, k, np.array([depth]), fixed.error)
     following = observed(own, diameter + offsets, focus + bench.law_slope * offsets)
     focused = observed(own, at_rest, focus + offsets)
     bent = [pair(placed) for placed in bench.bent.placed]

@@ -75,7 +75,7 @@ def calibration(
     Raises
     ------
     OctsimError
-        If the law is needed and could not be fitted.
+        If the law is needed and could not be fitted, or a diameter has no fringe.
     """
     exact, line = converged(config), focus_line(config, law)
     diameters = config.calibration.diameters.values()

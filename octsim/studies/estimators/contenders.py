@@ -8,7 +8,7 @@ import numpy as np
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.optics.two_beams import predicted_phase_slope
-from octsim.phase.estimators import estimate
+from octsim.phase.estimators import phases
 from octsim.phase.estimators.estimate import Array
 from octsim.phase.estimators.likelihood import Model, maximum_likelihood
 from octsim.phase.estimators.series import series_phases
@@ -74,7 +74,7 @@ def sweep_phases(
     """
     if processing.estimator == LIKELIHOOD:
         return band.predicted * maximum_likelihood(intensity, model, processing.read_noise)
-    return estimate(intensity, band.wavenumber, band.n_neuron * diameter, processing).phase
+    return phases(intensity, band.wavenumber, band.n_neuron * diameter, processing).phase
 
 
 def phases_of_series(

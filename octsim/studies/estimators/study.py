@@ -16,6 +16,7 @@ from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 from octsim.phase.estimators.estimate import Array, middle
 from octsim.phase.estimators.likelihood import Model
+from octsim.phase.estimators.visible import require_fringe
 from octsim.phase.modelled_spectra import MODEL_ACCURACY, model_of_sweep
 from octsim.phase.slopes import trend
 from octsim.stages.focus_law import sweep_foci
@@ -81,6 +82,11 @@ def estimators(
         phase_slope and converged_phase_slope (estimator, diameter), of counted rays and of light
         paths; their scatter about a trend, bias and largest spike; resolution(estimator, snr) and
         its bound; and how another scene's spectra are misread.
+
+    Raises
+    ------
+    OctsimError
+        If a diameter has no fringe.
     """
     diameter, foci = config.sweep.diameters.values(), sweep_foci(config, law)
     by_paths = Instrument(by_accuracy(config, MODEL_ACCURACY), points)
@@ -88,6 +94,7 @@ def estimators(
     compared = contenders(config)
     band = Band(config.scene.refractive_index.neuron, by_paths.wavenumber)
     scenes = other_scenes(config, foci, threads, points)
+    require_fringe("estimators", scenes[0].intensity, band.wavenumber, band.n_neuron * diameter)
     model = model_of_sweep(config, foci, threads, points)
     true = _true_slopes(by_paths, diameter, foci, threads)
     rough = counted.spectra(diameter, foci, threads)

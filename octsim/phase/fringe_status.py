@@ -1,0 +1,96 @@
+"""Whether a spectrum has a fringe that a phase can be read from, by name and with a remedy."""
+
+from collections.abc import Mapping
+from enum import IntEnum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+class FringeStatus(IntEnum):
+    """What is known of a fringe; from `SATURATED` on there is a phase, but a doubtful one."""
+
+    VISIBLE = 0
+    NO_SPECTRUM = 1
+    """The spectrum is NaN, as there is no focus."""
+    NO_LIGHT = 2
+    """The spectrum is zero."""
+    TOO_FEW_OSCILLATIONS = 3
+    """The band has less than `octsim.phase.estimators.visible.FEWEST_OSCILLATIONS`."""
+    NOT_RESOLVED = 4
+    """There are too few samples for the oscillations."""
+    NO_FRINGE = 5
+    """There is light, but what oscillates at the depth is not told from noise, from rounding or
+    from a smooth curve."""
+    WITHIN_ERROR = 6
+    """The fringe is smaller than the estimated error of the intensity."""
+    OTHER_DEPTHS = 7
+    """What oscillates at other depths is at least half as strong, or the strongest component of
+    the Fourier transform is of another depth."""
+    SATURATED = 8
+    """Several samples are cut at the largest or the least value."""
+    FAR_FROM_NOMINAL = 9
+    """The fringe is at another depth than the one that was expected."""
+    MIXED = 10
+    """What oscillates at other depths is at least a tenth as strong."""
+    POOR_FIT = 11
+    """The residual has a shape: the fringe is not a sinusoid on a slowly changing offset."""
+
+    @property
+    def has_phase(self) -> bool:
+        """Whether a phase can be read from the spectrum."""
+        return self == FringeStatus.VISIBLE or self >= FringeStatus.SATURATED
+
+    @property
+    def remedy(self) -> str:
+        """What a user can do about it; empty where nothing is amiss."""
+        return _REMEDIES[self]
+
+
+_ALONE = (
+    "give a smaller gap or detector.core_diameter, or bring the focus between the neuron's sides, "
+    "so that the fringe of the diameter is by far the strongest; divide measured spectra by the "
+    "source's own"
+)
+_REMEDIES: Mapping[FringeStatus, str] = {
+    FringeStatus.VISIBLE: "",
+    FringeStatus.NO_SPECTRUM: "give focus_law.fraction a wider range or more steps",
+    FringeStatus.NO_LIGHT: (
+        "bring the focus to the neuron, give detector.core_diameter a larger value, or media whose "
+        "indices differ"
+    ),
+    FringeStatus.TOO_FEW_OSCILLATIONS: "widen spectrum.wavelength, or take larger diameters",
+    FringeStatus.NOT_RESOLVED: "raise spectrum.samples, or narrow spectrum.wavelength",
+    FringeStatus.NO_FRINGE: (
+        "give the neuron an index other than that of water, and bring the focus between its sides; "
+        "of measured spectra, divide by the source's own and name the depth"
+    ),
+    FringeStatus.WITHIN_ERROR: "ask for more by tracing.accuracy",
+    FringeStatus.OTHER_DEPTHS: _ALONE,
+    FringeStatus.SATURATED: "expose for less, so that no sample is cut, and measure again",
+    FringeStatus.FAR_FROM_NOMINAL: (
+        "check the diameter, the index and the wavenumbers, and divide measured spectra by the "
+        "source's own"
+    ),
+    FringeStatus.MIXED: f"{_ALONE}; else its phase and slope are not of the diameter alone",
+    FringeStatus.POOR_FIT: (
+        "divide the spectra by the source's own, or raise the degrees of processing.sinusoid; else "
+        "phases and their changes can be wrong by far more than their standard error"
+    ),
+}
+
+
+WITH_PHASE = [status for status in FringeStatus if status.has_phase]
+"""Those of spectra whose phase can be read."""
+
+
+def doubts_of(status: "NDArray[np.int8]", what: str) -> list[str]:
+    """Say, a line each, how many of some things have a status that is amiss, with its remedy."""
+    return [
+        f"{one.name.lower()} at {(status == one).sum()} of {status.size} {what}"
+        f"{'' if one.has_phase else ', whose phase is not known (NaN)'}: {one.remedy}"
+        for one in FringeStatus
+        if one.remedy and (status == one).any()
+    ]
