@@ -31,8 +31,7 @@ from octsim.base.files import digest_of, require_folder
 from octsim.base.provenance import lock_file, source_digest
 from octsim.cli.job_server import PYTHON, SOCKET, start
 from octsim.config.derive import parts_of
-from octsim.config.grid import remarks
-from octsim.config.load import load_config
+from octsim.config.load import load_and_tell
 from octsim.config.models import Config
 from octsim.datasets.catalog import CATALOG, STAGES, TARGETS, Stage, jobs
 from octsim.datasets.code import code_of, figures_code
@@ -44,7 +43,7 @@ from octsim.stages.workload import shares_of
 
 try:
     # the files themselves too, as snakemake's own reading lets a key stand twice
-    run = load_config(*workflow.configfiles, config)
+    run, said = load_and_tell(*workflow.configfiles, config)
     require_folder(Path(f"results/{run.run}"))
     estimate = expected(run)
     if estimate.is_large:
@@ -56,7 +55,7 @@ except OctsimError as error:
 if run.run == Config().run and run != Config():
     remark = "run: not given, so this goes to results/thesis in the place of the thesis itself"
     print(f"octsim: warning: {remark}", file=sys.stderr)
-for remark in remarks(run):
+for remark in said:
     print(f"octsim: warning: {remark}", file=sys.stderr)
 
 sys.executable = shlex.quote(PYTHON)  # snakemake writes it into commands of a shell as it is

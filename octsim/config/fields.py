@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 
-def _number(value: object) -> object:
-    # YAML 1.1 reads 1e-6 (no dot) as text; what is plainly a number in that notation is one.
+def number(value: object) -> object:
+    """Return the number that text as 1e-6 plainly is; YAML 1.1 reads it as text, without a dot."""
     if isinstance(value, str) and ("e" in value or "E" in value):
         try:
             return float(value)
@@ -21,7 +21,7 @@ def _number(value: object) -> object:
     return value
 
 
-Number = Annotated[float, BeforeValidator(_number), Field(allow_inf_nan=False)]
+Number = Annotated[float, BeforeValidator(number), Field(allow_inf_nan=False)]
 PositiveLength = Annotated[Length, Field(ge=1e-6, le=1e6)]  # 1 pm to 1 m
 Position = Annotated[Length, Field(ge=-1e6, le=1e6)]
 Wavelength = Annotated[Length, Field(ge=1e-3, le=1e3)]  # 1 nm to 1 mm

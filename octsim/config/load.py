@@ -13,6 +13,7 @@ from octsim.config.derive import merge, overlaid, validated
 from octsim.config.grid import remarks
 from octsim.config.grid_values import expanded
 from octsim.config.models import Config
+from octsim.config.unread import asked_for, unread
 
 
 class _Loader(yaml.SafeLoader):
@@ -84,23 +85,31 @@ def load_config(*overlays: str | Path | Mapping[str, Any]) -> Config:
     Warns
     -----
     OctsimWarning
-        If the diameter step is so large that the unwrapped phase is ambiguous.
+        If something is possible but likely not meant, such as a diameter step that is so large that
+        the unwrapped phase is ambiguous, or a key that is given and not read.
 
     Examples
     --------
     >>> load_config({"scene": {"gap": "20 nm"}}).scene.gap
     0.02
     """
+    config, said = load_and_tell(*overlays)
+    for remark in said:
+        warnings.warn(remark, OctsimWarning, stacklevel=2)
+    return config
+
+
+def load_and_tell(*overlays: str | Path | Mapping[str, Any]) -> tuple[Config, list[str]]:
+    """Return the config as `load_config` does, and what that warns of, a line each."""
     given: dict[str, Any] = {}
+    asked: dict[str, Any] = {}
     for overlay in overlays:
-        given = merge(
-            given, overlay if isinstance(overlay, Mapping) else read_overlay(Path(overlay))
-        )
+        own = overlay if isinstance(overlay, Mapping) else read_overlay(Path(overlay))
+        asked |= asked_for(own, given)
+        given = merge(given, own)
     config = validated(overlaid(Config().to_dict(), given))
     if config.grid.varied:
         config = expanded(config)
     else:
         require_possible(config)
-    for remark in remarks(config):
-        warnings.warn(remark, OctsimWarning, stacklevel=2)
-    return config
+    return config, [*remarks(config), *unread(config, asked)]

@@ -69,7 +69,11 @@ def explain(error: ErrorDetails) -> str:
     if path == "run":
         message = "it should be a plain name as text: letters, digits, '.', '_' and '-', no path"
         if not isinstance(error["input"], str):
-            message += "; put it in quotes"
+            # snakemake reads the command line's 2024_06_01 as a number, quoted or not
+            message += (
+                "; put it in quotes in a config file, or write --config 'run=!!str NAME' on the "
+                "command line, which takes quotes away"
+            )
     elif path.startswith("expansion.drift"):
         message = (
             "it should be 'none', 'linear' or {reference: [[first, last], ...]}, the first and the "
@@ -85,6 +89,12 @@ def explain(error: ErrorDetails) -> str:
         known = re.findall(r"'([^']+)'", message)
         nearest = difflib.get_close_matches(error["input"], known, n=1, cutoff=0)[0]
         message = f"the nearest that is known is '{nearest}'; {message}"
+    elif error["type"] in {"int_type", "float_type"} and isinstance(error["input"], str):
+        whole = " whole" if error["type"] == "int_type" else ""
+        message = (
+            f"it should be a{whole} number, written out as digits and without quotes, in a config "
+            "file: in braces on the command line it is text"
+        )
     elif error["type"] == "int_type":
         message = "it should be a whole number, written out as digits"
     elif error["type"] in {"greater_than_equal", "less_than_equal"} and unit_of(path) == "um":

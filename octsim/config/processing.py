@@ -1,5 +1,6 @@
 """The part of the config that says how a spectrum becomes a phase."""
 
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
@@ -117,3 +118,25 @@ class Processing(Section):
     sinusoid: Sinusoid = Sinusoid()
     hilbert: Hilbert = Hilbert()
     esprit: Esprit = Esprit()
+
+
+OPTIONS: Mapping[str, tuple[str, ...]] = {
+    "fft": (),
+    "zero_padded": ("depth",),
+    "sinusoid": ("depth", "read_noise", *(f"sinusoid.{name}" for name in Sinusoid.model_fields)),
+    "hilbert": ("depth", "hilbert.band"),
+    "esprit": ("depth", "esprit.poles"),
+    "fringe": ("depth",),
+    "maximum_likelihood": ("read_noise",),
+}
+"""What each estimator reads besides the centre and the window, which the Fourier transform has."""
+
+
+def options_read(processing: Processing) -> set[str]:
+    """Return the options, of those that not every processing reads, that one reads."""
+    read = set(OPTIONS[processing.estimator])
+    if processing.estimator == "sinusoid" and processing.sinusoid.weights == "equal":
+        read.discard("read_noise")
+    if processing.centre == "polynomial":
+        read.add("centre_degree")
+    return read

@@ -127,11 +127,12 @@ _RUN = (
         "gaussian_fits", "octsim.stages.gaussian_fits:gaussian_fits",
         "Fit a Gaussian over the focus of each diameter",
         after=("focus_sweep",), job="focus_law",
+        doubts="octsim.stages.centres:doubts_of_fits",
     ),
     Stage(
         "focus_law", "octsim.stages.focus_law:focus_law",
         "Fit the focus law through their centres",
-        after=("gaussian_fits",), job="focus_law",
+        after=("gaussian_fits",), job="focus_law", doubts="octsim.stages.centres:doubts",
         figures=(
             Figure("figure_7", "octsim.figures.focus_law:figure_7",
                    "foci of greatest intensity, and the line through them",

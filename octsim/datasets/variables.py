@@ -6,7 +6,9 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     # name: (units, long_name)
     "accuracy_status": ("1", "whether the accuracy that was asked for is reached"),
     "amplitude": ("1", "amplitude"),
+    "brightest_focus": ("um", "brightest of the foci that were tried"),
     "centre": ("um", "focus of greatest intensity"),
+    "centre_use": ("1", "whether the focus law is fitted to the centre"),
     "component": ("1", "component of the Fourier transform"),
     "component_phase_slope": ("mrad/nm", "phase slope of each component"),
     "depth": ("um", "optical depth, half of the optical path difference"),
@@ -51,6 +53,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "phase_slope_standard_deviation": ("mrad/nm", "scatter of the phase slope about its mean"),
     "predicted_phase_slope": ("mrad/nm", "predicted phase slope, n_neuron (k_min + k_max)"),
     "rays_detected": ("1", "number of rays detected"),
+    "relative_residual": ("1", "residual over the range of the intensity"),
     "residual": ("1", "root mean square residual of the fit"),
     "rough_amplitude": ("1", "amplitude by a rougher rule, to estimate the error"),
     "segments_traced": ("1", "number of straight pieces of ray traced"),

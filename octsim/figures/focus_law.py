@@ -5,7 +5,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from octsim.config.models import FocusLine
-from octsim.figures.style import BLACK, BLUE, label, title
+from octsim.figures.style import BLACK, BLUE, VERMILION, label, title
+from octsim.stages.centres import CentreUse
 
 
 def figure_7(fits: xr.Dataset, law: xr.Dataset) -> Figure:
@@ -20,6 +21,16 @@ def figure_7(fits: xr.Dataset, law: xr.Dataset) -> Figure:
     errors = fits["centre_standard_error"]
     points = {"fmt": "o", "color": BLUE, "capsize": 3, "markersize": 4}
     foci.errorbar(diameter, centre, yerr=errors, label="centre ± standard error", **points)
+    use = law["centre_use"].values
+    for left_out, marker, text in (
+        (CentreUse.NO_CENTRE, "x", "no peak: the brightest focus"),
+        (CentreUse.OFF_THE_LINE, "s", "left out of the law"),
+    ):
+        at = use == left_out
+        if at.any():
+            height = centre.fillna(law["brightest_focus"]).values
+            look = {"linestyle": "", "color": VERMILION, "fillstyle": "none", "zorder": 3}
+            foci.plot(diameter.values[at], height[at], marker, label=text, **look)
     for rest in rests:
         fitted = line.at(diameter.values)
         sign = "+" if line.intercept >= 0 else "−"
@@ -31,8 +42,8 @@ def figure_7(fits: xr.Dataset, law: xr.Dataset) -> Figure:
         rest.set_ylabel("Off the line (nm)")
     foci.set_ylabel(label(centre, "best focus"))
     (rests or [foci])[-1].set_xlabel(label(diameter))
-    found = int(np.isfinite(centre).sum())
-    lack = "" if has_law else f", none: a peak for {found} of {centre.size} diameters only"
+    used = int((use == CentreUse.FITTED_THROUGH).sum())
+    lack = "" if has_law else f", none: a peak for {used} of {use.size} diameters only"
     foci.set_title(title(law, f"Focus law{lack}"))
     foci.legend()
     return figure

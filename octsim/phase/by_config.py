@@ -25,8 +25,6 @@ BEST = Processing.model_validate(
 """What measured spectra are processed by, unless something else is asked for."""
 
 
-LARGEST = 1e30
-"""Intensity above which a value stands for none, as the 9.97e36 of netCDF."""
 _OUTLYING = 1e6
 _NEARLY_ALL = 0.99
 
@@ -155,16 +153,16 @@ def phase_of(
 
 
 def require_sensible(raw: Raw) -> None:
-    """Refuse spectra with values that no detector gives, as those that stand for none.
+    """Refuse spectra with values that no detector gives.
 
     Raises
     ------
     DatasetError
-        If a value is above `LARGEST`, or 1e6 times above nearly all others of its spectrum.
+        If a value is 1e6 times above nearly all others of its spectrum.
     """
     size = np.abs(np.asarray(raw.intensity, float))
     usual = np.quantile(size, _NEARLY_ALL, axis=1, keepdims=True)
-    bad = (size > LARGEST) | ((size > _OUTLYING * usual) & (usual > 0))
+    bad = (size > _OUTLYING * usual) & (usual > 0)
     if bad.any():
         spectrum, sample = np.argwhere(bad)[0]
         raise DatasetError(

@@ -1,18 +1,20 @@
 """The focus law: a straight line through the foci of greatest intensity (figure 7)."""
 
+import warnings
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.base.errors import OctsimError
+from octsim.base.errors import OctsimError, OctsimWarning
 from octsim.config.grid import Combination
 from octsim.config.models import Config, FocusLine
 from octsim.datasets.files import flags
 from octsim.datasets.layout import Layout
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
+from octsim.stages.centres import FEWEST, CentreUse, doubts, failures, remedy, use_of
 from octsim.stages.gaussian_fits import FitStatus, law_diameters
 
 
@@ -43,8 +45,14 @@ def focus_law(config: Config, fits: xr.Dataset) -> Stream:
     Returns
     -------
     Dataset
-        slope, intercept and their standard errors, NaN if a fit has no peak; status(diameter) of
-        the fits.
+        slope, intercept and their standard errors, NaN if there are fewer than three centres to
+        fit; status and brightest focus of the fits, and centre_use, whether the line is fitted to
+        each and why not (diameter).
+
+    Warns
+    -----
+    OctsimWarning
+        If the line is not fitted to all diameters; it names them.
     """
     title = "Focus of greatest intensity as a linear function of the diameter"
     layout = Layout("focus_law", config, title, law_diameters)
@@ -52,10 +60,20 @@ def focus_law(config: Config, fits: xr.Dataset) -> Stream:
 
     def line(at: Combination) -> dict[str, object]:
         part = stored.part(at)
-        fitted = fit_line(part["diameter"].values, part["centre"].values)
-        status = part["status"]
+        diameter, centre = part["diameter"].values, part["centre"].values
+        use = use_of(diameter, centre, part["width"].values)
+        used = use == CentreUse.FITTED_THROUGH
+        enough = used.sum() >= FEWEST
+        fitted = fit_line(diameter[used], centre[used]) if enough else Line(*[np.nan] * 4)
         own: dict[str, object] = {name: ((), value) for name, value in fitted._asdict().items()}
-        return own | {"status": ("diameter", *flags(FitStatus, status.values))}
+        own |= {
+            "status": ("diameter", *flags(FitStatus, part["status"].values)),
+            "centre_use": ("diameter", *flags(CentreUse, use)),
+            "brightest_focus": ("diameter", part["brightest_focus"].values),
+        }
+        for doubt in doubts(xr.Dataset(own, {"diameter": diameter})):
+            warnings.warn(doubt, OctsimWarning, stacklevel=2)
+        return own
 
     return Stream(layout, (Part(at, 0, 1, line(at)) for at in layout.combinations))
 
@@ -84,26 +102,19 @@ def sweep_foci(config: Config, law: xr.Dataset | None) -> NDArray[np.float64]:
     diameters = config.sweep.diameters.values()
     if isinstance(config.sweep.focus, FocusLine):
         return config.sweep.focus.at(diameters)
-    remedy = "or give one as sweep.focus: {slope: 0.581, intercept: 69 nm}"
+    given = "or give one as sweep.focus: {slope: 0.581, intercept: 69 nm}"
     if law is None:
-        raise OctsimError(f"sweep.focus: 'law' given, so fit and pass the focus law, {remedy}")
+        raise OctsimError(f"sweep.focus: 'law' given, so fit and pass the focus law, {given}")
     if not np.isfinite(law["slope"]):
-        named = law["status"].attrs["flag_meanings"].split()
-        statuses = [named[status] for status in law["status"].values]
-        failed = ", ".join(
-            f"{diameter:.4g} um ({status})"
-            for diameter, status in zip(law["diameter"].values, statuses, strict=True)
-            if status != "fitted"
-        )
         raise OctsimError(
-            f"sweep.focus: 'law' given, but there is no law: no Gaussian fits at {failed}; change "
-            f"focus_law.diameters, or give focus_law.fraction a wider range or more steps, {remedy}"
+            "sweep.focus: 'law' given, but there is no law, which needs centres at "
+            f"{FEWEST} diameters: none at {failures(law)}; {remedy(config, law)}, {given}"
         )
     foci = FocusLine.fitted(law).at(diameters)
     if not foci.max() < config.objective.focus_distance:
         raise OctsimError(
             f"objective.focus_distance: {config.objective.focus_distance} um given, but the fitted "
-            f"law asks for a focus at {foci.max():.6g} um; raise the distance, {remedy}"
+            f"law asks for a focus at {foci.max():.6g} um; raise the distance, {given}"
         )
     return foci
 

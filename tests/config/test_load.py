@@ -99,6 +99,9 @@ BAD: list[tuple[dict[Any, Any], str]] = [
     ({"run": "../elsewhere"}, "run: '../elsewhere' given; it should be a plain name as text"),
     ({"run": ".hidden"}, "run: '.hidden' given; it should be a plain name as text"),
     ({"run": ""}, "run: '' given; it should be a plain name as text"),
+    ({"run": 20240601}, "put it in quotes in a config file, or write --config 'run=!!str NAME' on the command line"),
+    ({"tracing": {"rays": "3000"}}, "it should be a whole number, written out as digits and without quotes, in a config file"),
+    ({"objective": {"magnification": "20"}}, "it should be a number, written out as digits and without quotes, in a config file"),
 ]  # fmt: skip
 
 

@@ -7,13 +7,15 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from scipy.optimize import least_squares
+from swept import FOCI, xr_sweep
 
-from octsim.stages.gaussian_fits import FitStatus, fit_gaussian, gaussian
+from octsim.config.load import load_config
+from octsim.stages.centres import doubts_of_fits
+from octsim.stages.gaussian_fits import FitStatus, fit_gaussian, gaussian, gaussian_fits
 
-FOCI = np.linspace(0.4, 0.9, 41)
 
-
-@given(st.floats(0.5, 0.8), st.floats(0.03, 0.15), st.floats(1e-9, 1e3), st.floats(0, 1))
+@given(st.floats(0.5, 0.8), st.floats(0.008, 0.25), st.floats(1e-9, 1e3), st.floats(0, 1))
 def test_a_gaussian_comes_back(
     centre: float, width: float, amplitude: float, offset: float
 ) -> None:
@@ -24,6 +26,79 @@ def test_a_gaussian_comes_back(
     assert fit.parameters[2] == pytest.approx(amplitude, rel=1e-6)
     assert fit.parameters[3] == pytest.approx(offset * amplitude, abs=1e-6 * amplitude)
     assert fit.residual < 1e-7 * amplitude
+
+
+@given(st.floats(0.42, 0.88), st.floats(0.0005, 0.008))
+def test_a_peak_that_few_foci_are_on_is_found_within_a_step(centre: float, width: float) -> None:
+    intensity = gaussian(FOCI, centre, width, 1.0, 0.1)
+    intensity[0] += 0.01  # or nothing but rounding may be left of a peak between two foci
+    fit = fit_gaussian(FOCI, intensity)
+    if intensity.argmax() == 0:
+        assert fit.status is FitStatus.NO_INTERIOR_PEAK
+    else:
+        assert fit.status is FitStatus.FITTED
+        assert abs(fit.parameters[0] - centre) < FOCI[1] - FOCI[0]
+
+
+SHAPES = {
+    "side lobes": gaussian(FOCI, 0.6, 0.03, 1, 0) * (1 + 0.4 * np.cos((FOCI - 0.6) * 60)),
+    "two peaks": gaussian(FOCI, 0.5, 0.02, 1, 0) + gaussian(FOCI, 0.8, 0.03, 0.7, 0),
+    "asymmetric": np.where(
+        FOCI < 0.55, gaussian(FOCI, 0.55, 0.02, 1, 0), gaussian(FOCI, 0.55, 0.1, 1, 0)
+    ),
+    "on a slope": 2 * FOCI + gaussian(FOCI, 0.6, 0.05, 2, 0),
+    "broad": gaussian(FOCI, 0.7, 0.8, 1, 0) * (1 + 0.03 * FOCI),
+    "jumps": gaussian(FOCI, 0.6, 0.05, 1, 0.1) + 0.08 * (np.arange(41) * 7919 % 13 / 6 - 1),
+}
+
+
+@pytest.mark.parametrize("intensity", SHAPES.values(), ids=SHAPES)
+def test_no_start_leads_to_a_peak_that_leaves_less(intensity: NDArray[np.float64]) -> None:
+    fit = fit_gaussian(FOCI, intensity)
+    assert fit.status is FitStatus.FITTED
+    found = [
+        least_squares(
+            lambda p: gaussian(FOCI, *p) - intensity, [centre, width, np.ptp(intensity), 0.0],
+            bounds=([FOCI[0], 0.00625, 0, -np.inf], [FOCI[-1], 5, np.inf, np.inf]),
+            x_scale=[0.1, 0.1, 1, 1], xtol=1e-12, ftol=1e-12, gtol=None,
+        )
+        for centre in np.linspace(0.42, 0.88, 9)
+        for width in (0.01, 0.03, 0.1, 0.3)
+    ]  # fmt: skip
+    best = min(found, key=lambda one: one.cost)
+    assert fit.residual**2 * FOCI.size <= 2 * best.cost * (1 + 1e-6)
+
+
+def test_the_answer_does_not_hang_on_where_the_foci_are_counted_from() -> None:
+    intensity = SHAPES["jumps"]
+    fit, turned = fit_gaussian(FOCI, intensity), fit_gaussian(-FOCI[::-1], intensity[::-1])
+    assert -turned.parameters[0] == pytest.approx(fit.parameters[0], abs=1e-9)
+    assert turned.parameters[1:] == pytest.approx(fit.parameters[1:], rel=1e-7)
+
+
+def test_foci_without_a_number_are_left_out() -> None:
+    intensity = gaussian(FOCI, 0.6, 0.05, 1.0, 0.2)
+    intensity[::5] = np.nan
+    assert fit_gaussian(FOCI, intensity).parameters[0] == pytest.approx(0.6)
+
+
+@pytest.mark.parametrize("intensity", [np.zeros(41), np.full(41, np.nan)], ids=["dark", "nothing"])
+def test_no_light_is_named(intensity: NDArray[np.float64]) -> None:
+    assert fit_gaussian(FOCI, intensity).status is FitStatus.NO_LIGHT
+
+
+def test_noise_makes_no_peak_of_a_rise() -> None:
+    rng = np.random.default_rng(4)
+    fits = [fit_gaussian(FOCI, 5 * FOCI + rng.normal(0, 0.05, 41)) for _ in range(50)]
+    assert FitStatus.FITTED not in {fit.status for fit in fits}
+
+
+def test_what_a_single_peak_does_not_show_is_said() -> None:
+    config = load_config({"focus_law": {"diameters": {"start": "1 um", "stop": "2 um", "num": 2}}})
+    sweep = xr_sweep(np.stack([SHAPES["side lobes"], SHAPES["two peaks"]]))
+    (several,) = doubts_of_fits(gaussian_fits(config, sweep))
+    assert "leaves more than 0.1 of the intensity's range" in several
+    assert "at 1 of 2 diameters: 2 um (fitted" in several
 
 
 def test_standard_errors_are_those_of_repeated_noisy_fits() -> None:
@@ -42,8 +117,10 @@ def test_standard_errors_are_those_of_repeated_noisy_fits() -> None:
         FOCI,
         -gaussian(FOCI, 0.6, 0.1, 1.0, 0.0),
         gaussian(FOCI, 0.2, 0.1, 1.0, 0.0),
+        1 + 1e-14 * gaussian(FOCI, 0.6, 0.1, 1.0, 0.0),
+        1 - np.exp(-8 * FOCI),
     ],
-    ids=["flat", "rising", "dip", "peak outside"],
+    ids=["flat", "rising", "dip", "peak outside", "rounding", "saturating"],
 )
 def test_no_peak_between_the_foci_is_nan_with_a_status(intensity: NDArray[np.float64]) -> None:
     fit = fit_gaussian(FOCI, intensity)

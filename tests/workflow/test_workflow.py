@@ -233,6 +233,23 @@ def test_a_dataset_is_made_again_by_the_command_that_it_records(
     assert set(again) == {"tiny/focus_sweep.nc", "tiny/gaussian_fits.nc", "tiny/focus_law.nc"}
 
 
+def test_a_key_that_is_not_read_is_said_once(tmp_path: Path) -> None:
+    done = Checkout(tmp_path).snakemake(merged(TINY, {"tracing": {"accuracy": 1e-6}}), "--dry-run")
+    assert done.returncode == 0
+    assert done.stderr.count("octsim: warning: tracing.accuracy: 1e-06 given") == 1
+
+
+@pytest.mark.parametrize("name", ["2024_06_01", "007", "1e5"])
+def test_a_name_that_reads_as_a_number_is_taken_as_the_line_says(name: str, tmp_path: Path) -> None:
+    checkout = Checkout(tmp_path)
+    refused = checkout.snakemake(TINY, "--dry-run", "--config", f"run='{name}'")
+    assert refused.returncode != 0
+    assert "write --config 'run=!!str NAME' on the command line" in refused.stderr
+    for overlay, given in ((TINY, ["--config", f"run=!!str {name}"]), (TINY | {"run": name}, [])):
+        done = checkout.snakemake(overlay, "--dry-run", *given)
+        assert f"results/{name}/" in done.stdout, done.stdout + done.stderr
+
+
 def test_every_run_has_its_own_folder_and_the_same_bits(law: Checkout, tmp_path: Path) -> None:
     checkout = Checkout(tmp_path)
     checkout.run(TINY, "--cores", "1")

@@ -1,0 +1,139 @@
+"""Keys that a user gives and a run does not read, as other keys choose something else."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, get_args
+
+from octsim.config.derive import merge
+from octsim.config.fields import number
+from octsim.config.grid import as_text, combinations, value_at
+from octsim.config.messages import known_keys
+from octsim.config.models import Config
+from octsim.config.processing import OPTIONS, Processing, Sinusoid, options_read
+from octsim.schemes.table import COUNTED_RAYS, PRESETS, SCHEMES
+
+_CHOICES: Mapping[str, tuple[str, ...]] = {
+    "tracing.scheme": tuple(SCHEMES),
+    "processing.estimator": get_args(Processing.model_fields["estimator"].annotation),
+    "processing.centre": get_args(Processing.model_fields["centre"].annotation),
+    "processing.sinusoid.weights": get_args(Sinusoid.model_fields["weights"].annotation),
+}
+"""Keys that choose which others are read, and their values."""
+_PRESET = "tracing.preset"
+_OPTIONAL = {
+    _PRESET,
+    *(f"tracing.{name}" for scheme in SCHEMES.values() for name in scheme.options),
+    *(f"processing.{name}" for names in OPTIONS.values() for name in names),
+    "processing.centre_degree",
+}
+"""Keys that some choices read, and others do not."""
+_CALIBRATION = ("calibration", "expansion", "action_potential")
+"""Sections of who asks for a calibration, which has an estimator of its own."""
+_WHOLE = (
+    "scene", "objective", "detector", "tracing", "spectrum", "focus_scan", "focus_law", "sweep",
+    "processing",
+)  # fmt: skip
+"""Sections of a whole config: config/default.yaml has them, and all that was ever recorded."""
+
+
+def asked_for(overlay: Mapping[str, Any], before: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what an overlay itself asks for: dotted keys and their values.
+
+    Of a whole config that is what differs from what was laid before it and the defaults. What was
+    recorded of a run asks for nothing: every key is there, whoever gave it.
+
+    Parameters
+    ----------
+    overlay, before : mapping
+        Plain data, and what was laid before it.
+    """
+    given = dict(_leaves(overlay))
+    if not all(isinstance(overlay.get(section), Mapping) for section in _WHOLE):
+        return given
+    name, scheme = (overlay["tracing"].get(key) for key in ("preset", "scheme"))
+    agree = name is None or PRESETS.get(str(name), {}).get("scheme") == scheme
+    if "preset" in overlay["tracing"] and agree and not before:
+        return {}
+    base = dict(_leaves(merge(Config().to_dict(), before)))
+    return {key: value for key, value in given.items() if number(base.get(key)) != number(value)}
+
+
+def _leaves(data: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    """Return the values under all dotted keys; a varied key is ``grid.<key>``."""
+    for name, value in data.items():
+        if isinstance(value, Mapping) and prefix != "grid.":
+            yield from _leaves(value, f"{prefix}{name}.")
+        else:
+            yield f"{prefix}{name}", value
+
+
+def unread(config: Config, asked: Mapping[str, Any]) -> list[str]:
+    """Say, a line each, which keys are not read as others are, and what to do.
+
+    Parameters
+    ----------
+    config : Config
+        A checked config.
+    asked : mapping
+        Dotted keys that a user asks for, and their values.
+    """
+    chosen = [at.config for at in combinations(config, *_CHOICES, _PRESET)]
+    read = {key for one in chosen for key in _read(one)}
+    calibrates = any(key.startswith(_CALIBRATION) for key in asked)
+    said = []
+    for given, value in asked.items():
+        key = given.removeprefix("grid.")
+        own = {one for one in known_keys() if f"{one}.".startswith(f"{key}.")}
+        optional = own & _OPTIONAL
+        # of a section that is given in a grid, any part that is read is enough
+        if value is None or not optional or own - _OPTIONAL - {key} or optional & read:
+            continue
+        elsewhere = _elsewhere(config, optional)
+        if calibrates and elsewhere.startswith("calibration"):
+            continue
+        said.append(_line(given, value, chosen, optional, elsewhere))
+    return said
+
+
+def _line(given: str, value: Any, chosen: list[Config], keys: set[str], elsewhere: str) -> str:
+    chooser, reading = next(
+        (chooser, reading)
+        for chooser, values in _CHOICES.items()
+        if (reading := [one for one in values if keys & _read(_with(chosen[0], chooser, one))])
+    )
+    now = ", ".join(dict.fromkeys(str(value_at(one, chooser)) for one in chosen))
+    alone = f" (only {elsewhere} does)" if elsewhere else ""
+    preset = chooser == "tracing.scheme" and _PRESET not in keys and chosen[0].tracing.preset
+    instead = f" in the place of {_PRESET}" if preset else ""
+    return (
+        f"{given}: {as_text(value)} given, but {chooser}: {now} does not read it{alone}; leave it "
+        f"out, or give {chooser}: {' or '.join(reading)}{instead}"
+    )
+
+
+def _with(config: Config, chooser: str, value: str) -> Config:
+    """Return a config, not checked, with one of the choices made."""
+    *sections, name = chooser.split(".")
+    part: Any = value_at(config, ".".join(sections)).model_copy(update={name: value})
+    for depth in range(len(sections) - 1, 0, -1):
+        above = value_at(config, ".".join(sections[:depth]))
+        part = above.model_copy(update={sections[depth]: part})
+    return config.model_copy(update={sections[0]: part})
+
+
+def _read(config: Config) -> set[str]:
+    """Return the keys of choices, of all that there are, that a plain config reads."""
+    tracing = config.tracing
+    read = {f"tracing.{name}" for name in SCHEMES[tracing.scheme].options}
+    if tracing.preset and PRESETS[tracing.preset]["scheme"] == tracing.scheme:
+        read.add(_PRESET)
+    return read | {f"processing.{name}" for name in options_read(config.processing)}
+
+
+def _elsewhere(config: Config, keys: set[str]) -> str:
+    """Return what else reads keys, if anything does."""
+    calibrating = config.processing.model_copy(update={"estimator": config.calibration.estimator})
+    if keys & {f"processing.{name}" for name in options_read(calibrating)}:
+        return f"calibration, by calibration.estimator: {config.calibration.estimator},"
+    if keys & {f"tracing.{name}" for name in COUNTED_RAYS.options}:
+        return "the focus scan's count of rays"
+    return ""
