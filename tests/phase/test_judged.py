@@ -162,5 +162,5 @@ def test_a_weak_fringe_is_measured_as_long_as_it_is_there() -> None:
 def test_values_that_stand_for_none_are_refused(value: float) -> None:
     spectrum = fringe()
     spectrum[[100, 300]] = value
-    with pytest.raises(DatasetError, match="2 values of intensity|in spectrum 0, sample 100, and 1 more like it"):
+    with pytest.raises(DatasetError, match=r"2 values.*spectrum 0|spectrum 0, sample 100, and 1"):
         octsim.phase_of(of(spectrum))
