@@ -22,6 +22,7 @@ from octsim.schemes.light import AccuracyStatus, Light
 from octsim.schemes.paths.aperture_tiles import images
 from octsim.schemes.paths.chebyshev import HIGHEST, LOOK, tables
 from octsim.schemes.paths.patch_integrals import rules
+from octsim.schemes.paths.polynomial_roots import bernstein_tables
 from octsim.schemes.paths.progress import SPARE, PathGoal, Progress, traced
 from octsim.schemes.paths.refine import settle
 from octsim.schemes.paths.survey import COLUMNS, part_of_faint, recall, survey_aperture
@@ -258,7 +259,7 @@ def integrate(
     middle = (low + high) / 2
     point = Point(
         faces_at(scene, middle), symmetric, detector, focus, middle, high,
-        *tables(symmetric), *tables(True), rules(),
+        *tables(symmetric), *tables(True), rules(), bernstein_tables(),
     )  # fmt: skip
     path, amplitude, rough_amplitude, optical_path_length, missing, segments, status = _integrate(
         point, *_orders(accuracy, symmetric), max_intersections, accuracy, budget

@@ -11,18 +11,15 @@ from numpy.typing import NDArray
 from octsim.schemes.paths.aperture_tiles import across
 from octsim.schemes.paths.chebyshev import HIGHEST
 from octsim.schemes.paths.line_crossings import (
+    MOST_CROSSINGS,
     Cut,
     TileLine,
     cross,
+    cross_edge,
     crossing_kind,
-    end_of,
     falloffs,
-    margins,
-    set_line,
-    turns_back,
 )
 
-_LINES = 24  # through a tile, to see where the way that they cross the patch changes
 _BETWEEN = 4  # parts between places where that is known to change
 _PIECES = 64  # of a tile, at most
 
@@ -79,54 +76,14 @@ def _kronrod(gauss: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[n
 
 
 @register_jitable
-def _edges(cut: Cut, line: TileLine, breaks: NDArray[np.float64], num: int) -> int:
-    """Add the ξ at which a margin at the lower or upper edge of a tile changes its sign."""
-    xi_min, xi_max = across(cut.tile.s_min, cut.symmetric), across(cut.tile.s_max, cut.symmetric)
-    step = (xi_max - xi_min) / _LINES
-    edges = (math.sqrt(cut.tile.v_min), math.sqrt(cut.tile.v_max))
-    values = np.empty((2, 3, _LINES + 1))
-    for i in range(_LINES + 1):
-        xi = xi_min + i * step
-        set_line(cut, xi, line)
-        for e in range(2):
-            values[e, 0, i], values[e, 1, i], values[e, 2, i] = margins(cut, xi, line, edges[e])
-    for e in range(2):
-        for which in range(3):
-            num = _changes(cut, line, edges[e], which, values[e, which], breaks, num)
-    return num
-
-
-@register_jitable
-def _changes(
-    cut: Cut, line: TileLine, y: float, which: int, values: NDArray[np.float64],
-    breaks: NDArray[np.float64], num: int,
-) -> int:  # fmt: skip
-    """Add the ξ at which one margin changes its sign, from its values at even steps."""
-    xi_min, xi_max = across(cut.tile.s_min, cut.symmetric), across(cut.tile.s_max, cut.symmetric)
-    step = (xi_max - xi_min) / _LINES
-    for i in range(1, _LINES + 1):
-        xi = xi_min + i * step
-        if (values[i] > 0) != (values[i - 1] > 0):
-            breaks[num] = end_of(cut, line, y, which, xi - step, xi)
-            num += 1
-        elif i >= 2 and turns_back(values[i - 2], values[i - 1], values[i]):
-            # it turns before it reaches zero, as far as three places tell: look closer
-            left, middle, right = values[i - 2], values[i - 1], values[i]
-            turn = xi - step + 0.5 * step * (left - right) / (left - 2 * middle + right)
-            set_line(cut, turn, line)
-            if (margins(cut, turn, line, y)[which] > 0) != (middle > 0):
-                breaks[num] = end_of(cut, line, y, which, xi - 2 * step, turn)
-                breaks[num + 1] = end_of(cut, line, y, which, turn, xi)
-                num += 2
-    return num
-
-
-@register_jitable
 def _breaks(cut: Cut, line: TileLine, breaks: NDArray[np.float64]) -> int:
     """List the ξ at which the way that lines cross the patch changes, both ends included."""
-    xi_min, xi_max = across(cut.tile.s_min, cut.symmetric), across(cut.tile.s_max, cut.symmetric)
-    breaks[0], breaks[1] = xi_min, xi_max
-    num = _edges(cut, line, breaks, 2)
+    tile, num = cut.tile, 2
+    breaks[0], breaks[1] = across(tile.s_min, cut.symmetric), across(tile.s_max, cut.symmetric)
+    for v in (tile.v_min, tile.v_max):
+        for root in line.roots[: cross_edge(cut, v, line)]:
+            breaks[num] = across(tile.s_min + (tile.s_max - tile.s_min) * root, cut.symmetric)
+            num += 1
     breaks[:num] = np.sort(breaks[:num])
     # between those, a line may still begin or cease to cross the patch within the tile
     known = num
@@ -213,7 +170,7 @@ def moments(
     for a in range(n):
         for b in range(m):
             exact[a, b], rough[a, b] = 0.0, 0.0
-    breaks = np.empty(16 * _LINES)
+    breaks = np.empty(2 + 8 * MOST_CROSSINGS)
     num = _breaks(cut, line, breaks)
     below, above = np.empty(_PIECES), np.empty(_PIECES)
     here, here_rough = np.empty((n, m)), np.empty((n, m))

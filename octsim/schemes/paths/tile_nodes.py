@@ -64,7 +64,9 @@ def map_tile(
 @register_jitable
 def weigh(point: Point, tile: Tile, n: int, m: int, tolerance: float, space: Workspace) -> float:
     """Find the weight of each node of a tile, and by a rougher rule; return their sum."""
-    cut = Cut(space.returns, n, m, tile, point.symmetric, point.detector.radius)
+    cut = Cut(
+        space.returns, n, m, tile, point.symmetric, point.detector.radius, point.bernstein
+    )
     total = moments(cut, tolerance, point.rules, space.line, space.exact, space.rough)
     _to_nodes(point, space.exact, n, m, n, m, space.between, space.weight)
     _to_nodes(point, space.rough, n - LESS_S, m - LESS_V, n, m, space.between, space.rough_weight)

@@ -13,6 +13,7 @@ from octsim.schemes.paths.chebyshev import HIGHEST
 from octsim.schemes.paths.line_crossings import Map, TileLine, room_for_line
 from octsim.schemes.paths.patch_by_fit import Search, room_for_search
 from octsim.schemes.paths.patch_integrals import Rules
+from octsim.schemes.paths.polynomial_roots import BernsteinTables
 from octsim.schemes.paths.waiting_tiles import WaitingTiles, room_for_waiting
 from octsim.tracing.faces import Faces
 from octsim.tracing.follow import Bundle, FollowRoom, room_for_bundle, room_for_following
@@ -36,6 +37,7 @@ class Point(NamedTuple):
     """The same along v."""
     transforms_v: NDArray[np.float64]
     rules: Rules
+    bernstein: BernsteinTables
 
 
 class Survey(NamedTuple):
