@@ -16,18 +16,32 @@ from octsim.tracing.follow import Bundle
 
 USUALLY, NEAR_AN_EDGE = 0.5, 1.0
 """How far a quantity may go on past known corners; and where light can miss a cylinder."""
+_ELSEWHERE = 2.0  # what it may vary by, over what it does elsewhere in a tile
+
+
+@register_jitable(forceinline=True)
+def _difference(
+    values: NDArray[np.float64], followed: NDArray[np.bool_], n: int, m: int, p: int, q: int,
+    here: float,
+) -> float:  # fmt: skip
+    """Return how far a quantity at a node is from a value; −1 if the node is not known."""
+    if 0 <= p < n and 0 <= q < m and followed[p * m + q]:
+        return abs(values[p * m + q] - here)
+    return -1.0
 
 
 @register_jitable
 def _variation(
-    values: NDArray[np.float64], followed: NDArray[np.bool_], n: int, m: int, i: int, j: int
+    values: NDArray[np.float64], followed: NDArray[np.bool_], n: int, m: int, along_v: bool
 ) -> float:
-    """Return the largest difference of a quantity at a node from that at its neighbours."""
-    here, most = values[i * m + j], 0.0
-    for step_i, step_j in ((-1, 0), (1, 0), (0, -1), (0, 1)):
-        p, q = i + step_i, j + step_j
-        if 0 <= p < n and 0 <= q < m and followed[p * m + q]:
-            most = max(most, abs(values[p * m + q] - here))
+    """Return the largest difference of neighbours of a tile along one axis; −1 if there are none."""
+    most = -1.0
+    for p in range(n):
+        for q in range(m):
+            if followed[p * m + q]:
+                here = values[p * m + q]
+                there = (p, q + 1) if along_v else (p + 1, q)
+                most = max(most, _difference(values, followed, n, m, there[0], there[1], here))
     return most
 
 
@@ -42,20 +56,30 @@ def _span(
     extrapolation: float,
 ) -> tuple[float, float, float]:
     """Return the bounds of a quantity in a cell, as its corners tell, and its variation."""
-    least, most, vary, known = np.inf, -np.inf, 0.0, 0
+    least, most, known = np.inf, -np.inf, 0
+    vary_s, vary_v = -1.0, -1.0
     for p in (i, i + 1):
         for q in (j, j + 1):
             if followed[p * m + q]:
-                least, most = min(least, values[p * m + q]), max(most, values[p * m + q])
-                vary = max(vary, _variation(values, followed, n, m, p, q))
+                here = values[p * m + q]
+                least, most = min(least, here), max(most, here)
+                for step in (-1, 1):
+                    vary_s = max(vary_s, _difference(values, followed, n, m, p + step, q, here))
+                    vary_v = max(vary_v, _difference(values, followed, n, m, p, q + step, here))
                 known += 1
-    slack = extrapolation * vary
     if known == 4:
         vary = most - least
-        slack = 0.5 * vary
-    if vary == 0:  # a lone corner: nothing tells how it varies, so that may be by all of it
+        return least - 0.5 * vary, most + 0.5 * vary, vary
+    # what the cell's own corners do not tell, the tile's others do, less surely
+    if vary_s < 0:
+        vary_s = _ELSEWHERE * _variation(values, followed, n, m, False)
+    if vary_v < 0:
+        vary_v = _ELSEWHERE * _variation(values, followed, n, m, True)
+    vary = max(vary_s, vary_v)
+    if min(vary_s, vary_v) < 0 or vary == 0:
+        # along one axis nothing tells how it varies, so that may be by all of it
         return min(least, 0.0), max(most, 0.0), max(abs(least), abs(most))
-    return least - slack, most + slack, vary
+    return least - extrapolation * vary, most + extrapolation * vary, vary
 
 
 @register_jitable(forceinline=True)

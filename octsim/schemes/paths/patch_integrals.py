@@ -96,7 +96,7 @@ def _breaks(cut: Cut, line: TileLine, breaks: NDArray[np.float64]) -> int:
             after = crossing_kind(cut, high, line)
             if after != before and num < breaks.size:
                 inner, outer = low, high
-                for _ in range(40):
+                for _ in range(28):
                     half = 0.5 * (inner + outer)
                     if crossing_kind(cut, half, line) == before:
                         inner = half
