@@ -84,11 +84,14 @@ def _span(
 
 @register_jitable(forceinline=True)
 def _part_within(span: tuple[float, float, float], radius: float) -> float:
-    """Estimate the part of a cell in which a quantity is within a radius; 0 if in none."""
+    """Estimate the part of a cell in which a quantity is within a radius; 0 if in none.
+
+    As where it turns back there, like a square: where it varies evenly the part is less.
+    """
     low, high, vary = span
     if low > radius or high < -radius:
         return 0.0
-    return min(1.0, 2 * radius / (high - low)) if vary > 0 else 1.0
+    return math.sqrt(min(1.0, 2 * radius / (high - low))) if vary > 0 else 1.0
 
 
 @register_jitable(forceinline=True)
