@@ -23,7 +23,7 @@ from octsim.tracing.light_paths import LONGEST, steps_of
 
 Array = NDArray[np.float64]
 COLUMNS, ROWS = 320, 240
-"""Cells of the coarse grid, along ξ and along y, of a quarter of the aperture."""
+"""Cells of the coarse grid, along ξ and along asin y, of a quarter of the aperture."""
 _AT_ONCE = 16  # rows of the coarse grid that are traced together
 _FINEST = 2500.0  # cells along each side of a patch, at most
 _RAYS = 6_000_000  # of one path, at most
@@ -64,13 +64,13 @@ def _sum_cells(
     for number in range(total):
         cell, place = number // (finer * finer), number % (finer * finer)
         xi = (columns[cell] * finer + place // finer + 0.5) * width
-        y = (rows[cell] * finer + place % finer + 0.5) * height
-        half = math.sqrt(1 - y * y)
+        angle = 0.5 * math.pi * (rows[cell] * finer + place % finer + 0.5) * height
+        y, half = math.sin(angle), math.cos(angle)
         radius = detector.objective_radius
         beam.vx[count], beam.vy[count], beam.vz[count] = aim(
             xi * half * radius, y * radius, detector.focus_distance
         )
-        areas[count] = 4 / math.pi * half * width * height
+        areas[count] = 2 * half * half * width * height
         count += 1
         if count < LANES and number + 1 < total:
             continue
@@ -117,17 +117,19 @@ def _may_hold(known: NDArray[np.bool_], values: Array, limit: Array) -> NDArray[
     corners, there = _corners(values), _corners(known)
     low = np.where(there, corners, np.inf).min(axis=0)
     high = np.where(there, corners, -np.inf).max(axis=0)
-    vary = np.where(there.all(axis=0), 0.6 * (high - low), np.inf)
+    with np.errstate(invalid="ignore"):
+        vary = 0.6 * (high - low)
     limits = np.where(there, _corners(limit), 0.0).max(axis=0)
+    some, every = there.any(axis=0), there.all(axis=0)
     held: NDArray[np.bool_] = (low - vary <= limits) & (high + vary >= -limits)
-    return held & there.any(axis=0)
+    return some & (held | ~every)
 
 
 def parts_of(
     faces: Faces, detector: Detector, focus: float, max_intersections: int
 ) -> list[_Part]:
     """Return where on the aperture each light path may be detected."""
-    xi, y = np.linspace(0, 1, COLUMNS + 1), np.linspace(0, 1, ROWS + 1)
+    xi, y = np.linspace(0, 1, COLUMNS + 1), np.sin(np.linspace(0, np.pi / 2, ROWS + 1))
     xi[0], y[0], y[-1] = 1e-9, 1e-9, 1 - 1e-9
     found: dict[int, Array] = {}
     for begin in range(0, ROWS + 1, _AT_ONCE):
@@ -212,7 +214,8 @@ def dense_field(
         side = 40.0
         while True:
             side = min(max(side, (2 * size / allowed) ** 0.4), _FINEST)
-            fine, less = _finer(part, side), _finer(part, 0.71 * side)
+            fine = _finer(part, side)
+            less = max(1, round(0.71 * fine))
             better = by_grid(part, fine)[0]
             off = float(np.abs(better - by_grid(part, less)[0]).max())
             if off <= allowed or side >= _FINEST or part.rows.size * fine * fine > _RAYS:
@@ -230,4 +233,4 @@ def _faintest(part: _Part) -> float:
 
 def _finer(part: _Part, side: float) -> int:
     """Return into how many parts cells are cut along each axis for a patch of so many parts."""
-    return max(1, math.ceil(side / math.sqrt(part.rows.size)))
+    return max(2, math.ceil(side / math.sqrt(part.rows.size)))
