@@ -44,20 +44,39 @@ class _Part(NamedTuple):
     code: int
     columns: NDArray[np.int64]
     rows: NDArray[np.int64]
+    slopes: Array
+    """By how much the margin at the objective's rim varies along each cell, (2, cells)."""
     strongest: float
+
+
+@compiled()
+def _within(margin: float, across: float, along: float) -> float:
+    """Return the part of a square in which a margin is above zero, from that at its centre.
+
+    It varies by `across` from side to side and by `along` from end to end, evenly.
+    """
+    large, small = max(across, along), min(across, along)
+    beyond = 0.5 * (large + small) - abs(margin)
+    if beyond <= 0:
+        return 1.0 if margin > 0 else 0.0
+    if beyond >= small:
+        return 0.5 + margin / large
+    corner = beyond * beyond / (2 * large * small)
+    return 1 - corner if margin > 0 else corner
 
 
 @compiled()
 def _sum_cells(
     faces: Faces, detector: Detector, focus: float, code: int, columns: NDArray[np.int64],
-    rows: NDArray[np.int64], finer: int, first: float, step: float, real: Array, imaginary: Array,
+    rows: NDArray[np.int64], slopes: Array, finer: int, first: float, step: float, real: Array,
+    imaginary: Array,
 ) -> int:  # fmt: skip
     """Add a path's rays from a grid of midpoints over some cells; return how many are detected."""
     face, through = np.empty(LONGEST, np.int64), np.empty(LONGEST, np.bool_)
     meetings = steps_of(faces, code, face, through)
     room, bundle = room_for_following(), room_for_bundle()
     beam = Beam(np.empty(LANES), np.empty(LANES), np.empty(LANES), np.ones(LANES), np.arange(LANES))
-    areas = np.empty(LANES)
+    areas, across, along = np.empty(LANES), np.empty(LANES), np.empty(LANES)
     width, height = 1 / (COLUMNS * finer), 1 / (ROWS * finer)
     count, detected = 0, 0
     total = columns.size * finer * finer
@@ -71,19 +90,21 @@ def _sum_cells(
             xi * half * radius, y * radius, detector.focus_distance
         )
         areas[count] = 2 * half * half * width * height
+        across[count], along[count] = slopes[0, cell] / finer, slopes[1, cell] / finer
         count += 1
         if count < LANES and number + 1 < total:
             continue
         follow(faces, face, through, meetings, beam, count, detector, focus, room, bundle)
         for i in range(count):
-            if not bundle.followed[i] or bundle.inside[i] < 0:
+            if not bundle.followed[i]:
                 continue
+            part = _within(bundle.inside[i], across[i], along[i])
             scale = 1 / (bundle.cos[i] * detector.radius)
             weight = falloff((bundle.x[i] * scale) ** 2, (bundle.y[i] * scale) ** 2)
-            if not weight > 0:
+            if not weight * part > 0:
                 continue
             detected += 1
-            weight *= bundle.amplitude[i] * areas[i]
+            weight *= part * bundle.amplitude[i] * areas[i]
             path = bundle.optical_path_length[i]
             cos, sin = weight * math.cos(first * path), weight * math.sin(first * path)
             turn, turn_i = math.cos(step * path), math.sin(step * path)
@@ -166,8 +187,11 @@ def parts_of(
         flags |= _grown(partly) & ~_corners(known).all(axis=0)
         strength = np.where(known, np.abs(np.nan_to_num(amplitude)), 0.0)
         strongest = np.where(_grown(flags), _corners(strength).max(axis=0), 0.0)
+        across = np.abs(np.diff(inside, axis=0)[:, :-1] + np.diff(inside, axis=0)[:, 1:]) / 2
+        along = np.abs(np.diff(inside, axis=1)[:-1] + np.diff(inside, axis=1)[1:]) / 2
+        slopes = np.nan_to_num(np.stack([across[flags], along[flags]]))
         if flags.any():
-            parts.append(_Part(code, *np.nonzero(flags), float(strongest.max())))
+            parts.append(_Part(code, *np.nonzero(flags), slopes, float(strongest.max())))
     return parts
 
 
@@ -199,8 +223,8 @@ def dense_field(
     def by_grid(part: _Part, finer: int) -> tuple[Any, int]:
         real, imaginary = np.zeros(wavenumber.size), np.zeros(wavenumber.size)
         detected = _sum_cells(
-            faces, detector, focus, part.code, part.columns, part.rows, finer, first, step, real,
-            imaginary,
+            faces, detector, focus, part.code, part.columns, part.rows, part.slopes, finer, first,
+            step, real, imaginary,
         )  # fmt: skip
         return real + 1j * imaginary, detected
 

@@ -36,7 +36,7 @@ from octsim.schemes.paths.workspace import (
     room_for_nodes,
     room_for_point,
 )
-from octsim.tracing.faces import faces_at
+from octsim.tracing.faces import Faces, faces_at
 from octsim.tracing.follow import follow
 from octsim.tracing.kernel import trace_amplitudes
 from octsim.tracing.lanes import LANES
@@ -45,6 +45,8 @@ from octsim.tracing.tree import check_reach
 
 BUDGET = 1_000_000
 """Segments traced for one point, at most."""
+STEEP = 0.92
+"""Sine of the angle of light, from which on the aperture is surveyed closely."""
 _ATTEMPTS = 4
 _PEAK_SAMPLES = 32
 _ONE_PATH = 0.1  # of the accuracy, that a single path may use
@@ -262,7 +264,8 @@ def integrate(
         *tables(symmetric), *tables(True), rules(), bernstein_tables(),
     )  # fmt: skip
     path, amplitude, rough_amplitude, optical_path_length, missing, segments, status = _integrate(
-        point, *_orders(accuracy, symmetric), max_intersections, accuracy, budget
+        point, *_orders(accuracy, symmetric, steepest_sine(point.faces, detector)),
+        max_intersections, accuracy, budget,
     )
     return Light(
         path,
@@ -277,11 +280,23 @@ def integrate(
     )
 
 
-def _orders(accuracy: float, symmetric: bool) -> tuple[tuple[int, int], tuple[int, int]]:
+def steepest_sine(faces: Faces, detector: Detector) -> float:
+    """Return the sine of light's angle with the axis, where it is largest; above 1 past critical."""
+    radius, distance = detector.objective_radius, detector.focus_distance
+    least = min(faces.n_i.min(), faces.n_t.min())
+    return radius / math.hypot(radius, distance) * faces.n_objective / least
+
+
+def _orders(
+    accuracy: float, symmetric: bool, steepest: float
+) -> tuple[tuple[int, int], tuple[int, int]]:
     """Return the numbers of nodes along each axis to begin with: of the survey and of a tile."""
     digits = -math.log10(accuracy)
     along_s = min(max(3, round(2 + digits)), 9)
     along_v = max(3, along_s - 2)
+    if steepest > STEEP:
+        # near grazing incidence light goes to and fro, and its way changes fast
+        along_s, along_v = 10, LANES // 10
     # where nothing says that patches are near x = 0, all of the aperture is looked at closely
     survey = (along_s if symmetric else min(COLUMNS, LANES // along_v)), along_v
     return survey, (min(max(4, round(digits + 1)), 10), min(max(3, round(0.5 * digits + 1)), 8))
