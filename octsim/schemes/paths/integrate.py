@@ -21,6 +21,7 @@ from octsim.optics.scene import Plane, Scene
 from octsim.schemes.light import AccuracyStatus, Light
 from octsim.schemes.paths.aperture_tiles import images
 from octsim.schemes.paths.chebyshev import HIGHEST, LOOK, tables
+from octsim.schemes.paths.check_rays import CHECKS
 from octsim.schemes.paths.patch_integrals import rules
 from octsim.schemes.paths.polynomial_roots import bernstein_tables
 from octsim.schemes.paths.progress import SPARE, PathGoal, Progress, traced
@@ -296,7 +297,7 @@ def _orders(
     along_v = max(3, along_s - 2)
     if steepest > STEEP:
         # near grazing incidence light goes to and fro, and its way changes fast
-        along_s, along_v = 10, LANES // 10
+        along_s, along_v = 7, (LANES - CHECKS) // 7
     # where nothing says that patches are near x = 0, all of the aperture is looked at closely
-    survey = (along_s if symmetric else min(COLUMNS, LANES // along_v)), along_v
+    survey = (along_s if symmetric else min(COLUMNS, (LANES - CHECKS) // along_v)), along_v
     return survey, (min(max(4, round(digits + 1)), 10), min(max(3, round(0.5 * digits + 1)), 8))

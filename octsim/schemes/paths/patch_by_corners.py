@@ -12,6 +12,7 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.schemes.paths.aperture_tiles import Tile, between, fraction
+from octsim.schemes.paths.check_rays import CheckRays, field_seen
 from octsim.tracing.follow import Bundle
 
 USUALLY, NEAR_AN_EDGE = 0.5, 1.0
@@ -181,12 +182,14 @@ class Cells(NamedTuple):
 def reached(
     bundle: Bundle, n: int, m: int, along_s: NDArray[np.float64], along_v: NDArray[np.float64],
     tile: Tile, cells: Cells, symmetric: bool, detector_radius: float, extrapolation: float,
+    checks: CheckRays,
 ) -> tuple[float, Tile]:  # fmt: skip
     """Return the part of some cells of a partially covered tile that the patch can be in.
 
     Nothing is fitted; cells between nodes are left out if their corners are well beside the
     detector or beyond the objective's rim, or if no corner takes the path. Towards a corner that is
-    not known a quantity may go on by `extrapolation` times what it varies between known ones.
+    not known a quantity may go on by `extrapolation` times what it varies between known ones. A cell
+    where a check ray is detected is not left out.
 
     Returns
     -------
@@ -204,6 +207,9 @@ def reached(
                 tile.s_min + s * along_s[i], tile.s_max, tile.v_min + v * along_v[j], tile.v_max
             )
             here = _cell(bundle, n, m, i, j, cell, start, symmetric, detector_radius, extrapolation)
+            # about both axes the patch's size is known from its slopes
+            if here == 0 or i > 0 or j > 0 or not symmetric:
+                here = max(here, field_seen(checks, cell, symmetric))
             if here > 0:
                 left, right = min(left, i), max(right, i)
                 below, above = min(below, j), max(above, j)

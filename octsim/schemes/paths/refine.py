@@ -13,7 +13,8 @@ from numba.extending import register_jitable
 
 from octsim.schemes.paths.aperture_tiles import Tile, area, between, fraction
 from octsim.schemes.paths.chebyshev import FIT, HIGHEST, LOOK
-from octsim.schemes.paths.line_crossings import LESS_S, LESS_V
+from octsim.schemes.paths.check_rays import field_seen, sees_beside, weight_error
+from octsim.schemes.paths.line_crossings import LESS_S, LESS_V, Cut
 from octsim.schemes.paths.patch_by_corners import Cells, corner, reached
 from octsim.schemes.paths.patch_by_fit import holding
 from octsim.schemes.paths.progress import PathGoal, Progress, left_out, spare
@@ -113,7 +114,7 @@ def _look(
     for cells in parts:
         bound, part = reached(
             space.bundle, n, m, along_s, along_v, tile, cells, point.symmetric, radius,
-            extrapolation,
+            extrapolation, space.checks,
         )  # fmt: skip
         rest = OpenTile(part, MIXED, MIXED, LOOK, allotment, bound, np.inf)
         if bound <= 0.25 * max(may_miss - missing, 0.0):
@@ -167,6 +168,7 @@ def _fit(
     `rest` is the part that the patch can be in, `strongest` the largest amplitude.
     """
     tile, n, m, field = work.tile, work.n, work.m, rest.bound
+    seen = field_seen(space.checks, tile, point.symmetric) > 0
     relative = goal.relative * work.allotment
     tolerance = relative * max(goal.scale, progress.size)
     map_s, map_v = map_errors(point, tile, n, m, space)
@@ -183,12 +185,17 @@ def _fit(
         total = weigh(point, tile, n, m, close, space)
         size, error = sum_tile(point, n, m, space)
         error += (rim_s + rim_v) * total * strongest
+        cut = Cut(
+            space.returns, n, m, tile, point.symmetric, point.detector.radius, point.bernstein
+        )
+        off = weight_error(space.checks, cut, space.line)
+        error += off * max(total * strongest, field if seen else 0.0)
         tolerance = relative * max(goal.scale, progress.size + size)
     if total > 0 and (error <= tolerance or end):
         return _kept(rays, goal, work, space, progress, size, total, error)
     # where no patch is seen there is at most a rim, as faint as the map's error leaves room for
     rim = field * min(1.0, 4 * (map_s + map_v))
-    if end or (total == 0 and rim <= 0.25 * spare(goal, progress)):
+    if end or (total == 0 and not seen and rim <= 0.25 * spare(goal, progress)):
         return rays, left_out(progress, rim)
     _refine(
         point, work, rest, total == 0, TileErrors(error_s, error_v, error),
@@ -228,6 +235,10 @@ def settle(
     end = progress.segments > goal.budget or space.waiting.size[0] + 5 > MOST_TILES
     followed, strongest = followed_of(space, work.n * work.m)
     if followed == 0:
+        seen = field_seen(space.checks, work.tile, symmetric)
+        if end or seen <= 0.25 * spare(goal, progress):
+            return rays, left_out(progress, seen)
+        push_halves(space.waiting, work, symmetric)
         return rays, progress
     if followed < work.n * work.m:
         allowed = goal.relative * work.allotment * max(goal.scale, progress.size)
@@ -245,6 +256,10 @@ def settle(
     cells, smaller = holding(
         space.returns, work.n, work.m, work.tile, symmetric, point.detector.radius, space.search
     )
+    if sees_beside(space.checks, work.tile, smaller) or (
+        cells == 0 and field_seen(space.checks, work.tile, symmetric) > 0
+    ):
+        cells, smaller = 1.0, work.tile  # the polynomials are wrong
     field = cells * strongest * fraction(work.tile, symmetric)
     if field <= 0.25 * spare(goal, progress):
         return rays, left_out(progress, field)

@@ -8,8 +8,9 @@ from octsim.optics.beam import Beam
 from octsim.optics.detector import Acceptance, Outcome
 from octsim.schemes.paths.aperture_tiles import Tile, area, between
 from octsim.schemes.paths.chebyshev import LOOK
+from octsim.schemes.paths.check_rays import CHECKS, place_of, weight_of
 from octsim.schemes.paths.patch_by_corners import NEAR_AN_EDGE, USUALLY, Cells, reached
-from octsim.schemes.paths.tile_nodes import aim_at_tile, followed_of
+from octsim.schemes.paths.tile_nodes import aim_at, aim_at_tile, followed_of
 from octsim.schemes.paths.workspace import Point, Survey, Workspace
 from octsim.tracing.faces import Faces, is_flat
 from octsim.tracing.follow import note_return
@@ -23,14 +24,27 @@ COLUMNS = 24
 
 @register_jitable
 def recall(survey: Survey, number: int, point: Point, space: Workspace) -> None:
-    """Fill a bundle with the rays of one path of the survey."""
-    space.bundle.followed[: survey.orders[0] * survey.orders[1]] = False
+    """Fill a bundle with the rays of one path of the survey, and note its check rays."""
+    bundle, checks, nodes = space.bundle, space.checks, survey.orders[0] * survey.orders[1]
+    bundle.followed[:] = False
     for i in range(survey.begin[number], survey.end[number]):
         ray = survey.ray[i]
         note_return(
-            space.bundle, ray, point.detector, survey.x[i], survey.y[i], survey.vx[i], survey.vy[i]
+            bundle, ray, point.detector, survey.x[i], survey.y[i], survey.vx[i], survey.vy[i]
         )
-        space.bundle.amplitude[ray] = survey.amplitude[i]
+        bundle.amplitude[ray] = survey.amplitude[i]
+    checks.s[:], checks.v[:], checks.detected[0] = survey.check_s, survey.check_v, 0
+    for i in range(CHECKS):
+        ray = nodes + i
+        checks.weight[i] = 0.0
+        if bundle.followed[ray]:
+            checks.weight[i] = weight_of(
+                bundle.x[ray], bundle.y[ray], bundle.cos[ray], bundle.inside[ray],
+                point.detector.radius,
+            )  # fmt: skip
+            checks.amplitude[i] = bundle.amplitude[ray]
+        if checks.weight[i] > 0:
+            checks.detected[0] += 1
 
 
 @register_jitable
@@ -38,11 +52,19 @@ def survey_of(
     point: Point, root: Tile, n: int, m: int, max_intersections: int, min_amplitude: float,
     extrapolation: float, space: Workspace,
 ) -> tuple[Survey, float, int]:  # fmt: skip
-    """Trace the whole tree from n x m nodes of a tile: paths, faint rays a node, segments."""
+    """Trace the whole tree from n x m nodes of a tile: paths, faint rays a node, segments.
+
+    Check rays go with them, in the same block.
+    """
     aim_at_tile(point, root, n, m, LOOK, space.beam)
+    check_s, check_v = np.empty(CHECKS), np.empty(CHECKS)
+    for i in range(CHECKS):
+        check_s[i], check_v[i] = place_of(root, point.symmetric, i)
+        aim_at(point, check_s[i], check_v[i], space.beam, n * m + i)
+    count = n * m + CHECKS
     beam = Beam(
-        space.beam.vx[: n * m], space.beam.vy[: n * m], space.beam.vz[: n * m],
-        space.beam.amplitude[: n * m], space.beam.number[: n * m],
+        space.beam.vx[:count], space.beam.vy[:count], space.beam.vz[:count],
+        space.beam.amplitude[:count], space.beam.number[:count],
     )  # fmt: skip
     # all that returns: rays beside the detector tell where between them a patch is
     labels, numbers, segments, outcomes = trace_amplitudes(
@@ -68,16 +90,18 @@ def survey_of(
         numbers[AT_Y],
         numbers[AT_VX],
         numbers[AT_VY],
+        check_s,
+        check_v,
     )
     every = Cells(0, n - 1, 0, m - 1)
     for p in range(firsts.size):
         recall(survey, p, point, space)
-        survey.strongest[p] = followed_of(space, n * m)[1]
+        survey.strongest[p] = followed_of(space, count)[1]
         survey.bound[p], _ = reached(
             space.bundle, n, m, point.nodes_s[LOOK, n], point.nodes_v[LOOK, m], root, every,
-            point.symmetric, point.detector.radius, extrapolation,
+            point.symmetric, point.detector.radius, extrapolation, space.checks,
         )  # fmt: skip
-    return survey, outcomes[Outcome.FAINT] / (n * m), segments
+    return survey, outcomes[Outcome.FAINT] / count, segments
 
 
 @register_jitable
@@ -86,7 +110,8 @@ def only(survey: Survey, wanted: NDArray[np.bool_]) -> Survey:
     return Survey(
         survey.root, survey.orders, survey.code[wanted], survey.begin[wanted],
         survey.end[wanted], survey.extrapolation, survey.bound[wanted], survey.strongest[wanted],
-        survey.ray, survey.amplitude, survey.x, survey.y, survey.vx, survey.vy,
+        survey.ray, survey.amplitude, survey.x, survey.y, survey.vx, survey.vy, survey.check_s,
+        survey.check_v,
     )  # fmt: skip
 
 
@@ -112,6 +137,8 @@ def closer(point: Point, survey: Survey) -> tuple[bool, Tile]:
         if curved(point.faces, survey.code[p]):
             for i in range(survey.begin[p], survey.end[p]):
                 column = survey.ray[i] // m
+                if column >= n:
+                    continue
                 # at the top of the aperture all columns are one place
                 if root.v_max < 1 or survey.ray[i] % m < m - 1:
                     left, right = min(left, column), max(right, column)
@@ -165,7 +192,7 @@ def survey_aperture(
         close, lost, traced = survey_of(
             point,
             tile,
-            min(COLUMNS, LANES // m),
+            min(COLUMNS, (LANES - CHECKS) // m),
             m,
             max_intersections,
             min_amplitude,

@@ -19,18 +19,23 @@ CRUDE = 0.25
 _CLOSER = 1 / 3  # error of a rule, over how far a rougher one is from it, at most
 
 
+@register_jitable(forceinline=True)
+def aim_at(point: Point, s: float, v: float, beam: Beam, k: int) -> None:
+    """Aim a beam's ray k at a place of the aperture."""
+    radius, xi = point.detector.objective_radius, across(s, point.symmetric)
+    x, y = xi * math.sqrt(1 - v) * radius, math.sqrt(v) * radius
+    beam.vx[k], beam.vy[k], beam.vz[k] = aim(x, y, point.detector.focus_distance)
+
+
 @register_jitable
 def aim_at_tile(point: Point, tile: Tile, n: int, m: int, kind: int, beam: Beam) -> None:
     """Aim a beam's first n x m rays at the nodes of a tile."""
-    radius = point.detector.objective_radius
     along_s, along_v = point.nodes_s[kind, n], point.nodes_v[kind, m]
     for i in range(n):
-        xi = across(tile.s_min + (tile.s_max - tile.s_min) * along_s[i], point.symmetric)
+        s = tile.s_min + (tile.s_max - tile.s_min) * along_s[i]
         for j in range(m):
             v = tile.v_min + (tile.v_max - tile.v_min) * along_v[j]
-            x, y = xi * math.sqrt(1 - v) * radius, math.sqrt(v) * radius
-            k = i * m + j
-            beam.vx[k], beam.vy[k], beam.vz[k] = aim(x, y, point.detector.focus_distance)
+            aim_at(point, s, v, beam, i * m + j)
 
 
 @register_jitable

@@ -10,6 +10,7 @@ from octsim.optics.beam import Beam
 from octsim.optics.detector import Detector
 from octsim.schemes.paths.aperture_tiles import Tile
 from octsim.schemes.paths.chebyshev import HIGHEST
+from octsim.schemes.paths.check_rays import CheckRays, room_for_checks
 from octsim.schemes.paths.line_crossings import Map, TileLine, room_for_line
 from octsim.schemes.paths.patch_by_fit import Search, room_for_search
 from octsim.schemes.paths.patch_integrals import Rules
@@ -59,11 +60,15 @@ class Survey(NamedTuple):
     strongest: NDArray[np.float64]
     """Largest amplitude of each path's rays, (P,)."""
     ray: NDArray[np.int64]
+    """Place of each among the nodes, and behind them among the check rays."""
     amplitude: NDArray[np.float64]
     x: NDArray[np.float64]
     y: NDArray[np.float64]
     vx: NDArray[np.float64]
     vy: NDArray[np.float64]
+    check_s: NDArray[np.float64]
+    """Places of its check rays, (CHECKS,)."""
+    check_v: NDArray[np.float64]
 
 
 class Workspace(NamedTuple):
@@ -85,6 +90,8 @@ class Workspace(NamedTuple):
     face: NDArray[np.int64]
     through: NDArray[np.bool_]
     waiting: WaitingTiles
+    checks: CheckRays
+    """Of the path that is integrated."""
 
 
 class WeightedRays(NamedTuple):
@@ -107,7 +114,7 @@ def room_for_point() -> Workspace:
         np.empty(square), np.empty(square), np.empty(square), np.empty(square), np.empty(square),
         np.empty(square), np.empty(square),
         np.empty(LONGEST, np.int64), np.empty(LONGEST, np.bool_),
-        room_for_waiting(),
+        room_for_waiting(), room_for_checks(),
     )  # fmt: skip
 
 
