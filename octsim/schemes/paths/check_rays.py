@@ -62,7 +62,7 @@ def place_of(tile: Tile, symmetric: bool, number: int) -> tuple[float, float]:
     return tile.s_min + _NEAR * (tile.s_max - tile.s_min), y * y
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def weight_of(x: float, y: float, cos: float, inside: float, radius: float) -> float:
     """Return a returning ray's `CheckRays.weight`; x and y are times cos θ."""
     squared = (x * x + y * y) / (radius * radius)
@@ -73,7 +73,7 @@ def weight_of(x: float, y: float, cos: float, inside: float, radius: float) -> f
     return falloff(squared / (cos * cos))
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def _is_in(checks: CheckRays, i: int, tile: Tile) -> bool:
     return (
         tile.s_min <= checks.s[i] <= tile.s_max and tile.v_min <= checks.v[i] <= tile.v_max

@@ -120,7 +120,7 @@ def set_line(cut: Cut, xi: float, line: TileLine) -> None:
         line.rough_x[b], line.rough_y[b] = x, along
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def falloffs(cut: Cut, xi: float, line: TileLine, y: float) -> tuple[float, float]:
     """Return the falloff at a place on a line, and that from a rougher map."""
     tile, m = cut.tile, cut.m
@@ -161,7 +161,7 @@ def _margin_at_detector(
     unscale(margin, 2 * n, cut.bernstein.binomials)
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def _reaches_rim(line: TileLine, n: int) -> bool:
     """Return whether not all of a line is within the objective's rim."""
     least = line.inside[0]
@@ -176,7 +176,7 @@ def _roots(cut: Cut, line: TileLine, n: int, margin: NDArray[np.float64], num: i
     return append_roots(margin, n, cut.bernstein.binomials, line.halves, line.roots, num)
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def _set_rim(cut: Cut, line: TileLine, n: int) -> None:
     """Fill in the margin at the objective's rim along a line of the tile."""
     to_bernstein(line.inside, n, cut.bernstein.from_chebyshev[n], line.at_rim)

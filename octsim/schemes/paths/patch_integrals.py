@@ -109,7 +109,7 @@ def _breaks(cut: Cut, line: TileLine, breaks: NDArray[np.float64]) -> int:
     return num
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def _along(cut: Cut, xi: float, rules: Rules, line: TileLine) -> None:
     """Integrate the falloff times each polynomial in v along a line."""
     m = cut.m

@@ -102,7 +102,7 @@ def value_at(
     return total
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def _sign_changes(coefficients: NDArray[np.float64], n: int) -> int:
     """Return how often the coefficients change their sign; zero counts as negative."""
     changes = 0
@@ -111,7 +111,7 @@ def _sign_changes(coefficients: NDArray[np.float64], n: int) -> int:
     return changes
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def _halve(whole: NDArray[np.float64], n: int, left: NDArray[np.float64]) -> None:
     """Put the coefficients of the left half into `left`, and of the right one in their place."""
     for depth in range(n):
@@ -120,7 +120,7 @@ def _halve(whole: NDArray[np.float64], n: int, left: NDArray[np.float64]) -> Non
             whole[j] = 0.5 * (whole[j] + whole[j + 1])
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def _only_root(coefficients: NDArray[np.float64], n: int, binomials: NDArray[np.float64]) -> float:
     """Return the one root between 0 and 1 of a polynomial whose ends differ in sign (Illinois)."""
     low, high, at_low, at_high, side = 0.0, 1.0, coefficients[0], coefficients[n - 1], 0
@@ -143,7 +143,7 @@ def _only_root(coefficients: NDArray[np.float64], n: int, binomials: NDArray[np.
     return c
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def append_roots(
     coefficients: NDArray[np.float64], n: int, binomials: NDArray[np.float64],
     room: NDArray[np.float64], roots: NDArray[np.float64], count: int,
