@@ -60,11 +60,11 @@ def room_for_following() -> FollowRoom:
 
 
 @register_jitable
-def room_for_bundle() -> Bundle:
+def room_for_bundle(size: int = LANES) -> Bundle:
     """Make the room that `follow` fills."""
     return Bundle(
-        np.empty(LANES, np.bool_), np.empty(LANES), np.empty(LANES), np.empty(LANES),
-        np.empty(LANES), np.empty(LANES), np.empty(LANES),
+        np.empty(size, np.bool_), np.empty(size), np.empty(size), np.empty(size), np.empty(size),
+        np.empty(size), np.empty(size),
     )  # fmt: skip
 
 

@@ -30,6 +30,7 @@ from octsim.schemes.paths.survey import COLUMNS, part_of_faint, recall, survey_a
 from octsim.schemes.paths.tile_nodes import aim_at_tile
 from octsim.schemes.paths.waiting_tiles import OpenTile, pop_strongest
 from octsim.schemes.paths.workspace import (
+    MOST_RAYS,
     Point,
     Survey,
     WeightedRays,
@@ -40,7 +41,6 @@ from octsim.schemes.paths.workspace import (
 from octsim.tracing.faces import Faces, faces_at
 from octsim.tracing.follow import follow
 from octsim.tracing.kernel import trace_amplitudes
-from octsim.tracing.lanes import LANES
 from octsim.tracing.light_paths import steps_of
 from octsim.tracing.tree import check_reach
 
@@ -297,7 +297,7 @@ def _orders(
     along_v = max(3, along_s - 2)
     if steepest > STEEP:
         # near grazing incidence light goes to and fro, and its way changes fast
-        along_s, along_v = 7, (LANES - CHECKS) // 7
+        along_s, along_v = 12, (MOST_RAYS - CHECKS) // 12
     # where nothing says that patches are near x = 0, all of the aperture is looked at closely
-    survey = (along_s if symmetric else min(COLUMNS, (LANES - CHECKS) // along_v)), along_v
+    survey = (along_s if symmetric else min(COLUMNS, (MOST_RAYS - CHECKS) // along_v)), along_v
     return survey, (min(max(4, round(digits + 1)), 10), min(max(3, round(0.5 * digits + 1)), 8))

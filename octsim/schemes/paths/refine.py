@@ -34,6 +34,8 @@ from octsim.schemes.paths.waiting_tiles import MOST_TILES, OpenTile, push, push_
 from octsim.schemes.paths.workspace import Point, WeightedRays, Workspace
 from octsim.tracing.lanes import LANES
 
+_MOST_TO_LOOK = 9  # nodes along an axis that polynomials fit, of those to look with
+_BLOCK = 4  # cells along an axis of those that go on as one
 MIXED = 4
 """Nodes along each axis of a partially covered tile."""
 # by how much an error falls with each order, typically (its logarithm)
@@ -127,6 +129,37 @@ def _look(
         return missing, OpenTile(tile, 0, 0, kind, allotment, 0.0, np.inf)
     near = between(tile, n, m, along_s, along_v, 0, p - 1, 0, q - 1)
     return missing, OpenTile(near, p, q, kind, allotment, 0.0, np.inf)
+
+
+@register_jitable
+def _look_closely(
+    point: Point, work: OpenTile, may_miss: float, goal: PathGoal, covered: bool, space: Workspace
+) -> float:
+    """Have the parts of a tile with many nodes wait, as its cells tell; return what is left out.
+
+    `covered` is one that all nodes take the path of. Others go on in blocks of a few cells, so that
+    nothing of what their nodes tell is forgotten.
+    """
+    tile, n, m, kind, allotment, _, _ = work
+    along_s, along_v, radius = point.nodes_s[kind, n], point.nodes_v[kind, m], point.detector.radius
+    step_s, step_v = (n - 1, m - 1) if covered else (_BLOCK, _BLOCK)
+    orders, next_kind = (goal.orders, FIT) if covered else ((MIXED, MIXED), LOOK)
+    missing = 0.0
+    for i in range(0, n - 1, step_s):
+        for j in range(0, m - 1, step_v):
+            cells = Cells(i, min(i + step_s, n - 1), j, min(j + step_v, m - 1))
+            bound, part = reached(
+                space.bundle, n, m, along_s, along_v, tile, cells, point.symmetric, radius,
+                goal.extrapolation, space.checks,
+            )  # fmt: skip
+            if bound <= 0.25 * max(may_miss - missing, 0.0):
+                missing += bound
+            else:
+                push(
+                    space.waiting,
+                    OpenTile(part, orders[0], orders[1], next_kind, allotment, bound, np.inf),
+                )
+    return missing
 
 
 @register_jitable
@@ -240,6 +273,11 @@ def settle(
             return rays, left_out(progress, seen)
         push_halves(space.waiting, work, symmetric)
         return rays, progress
+    if work.kind == LOOK and max(work.n, work.m) > _MOST_TO_LOOK:
+        missing = _look_closely(
+            point, work, spare(goal, progress), goal, followed == work.n * work.m, space
+        )
+        return rays, left_out(progress, missing)
     if followed < work.n * work.m:
         allowed = goal.relative * work.allotment * max(goal.scale, progress.size)
         guess = CRUDE * fraction(work.tile, symmetric) * strongest

@@ -11,11 +11,10 @@ from octsim.schemes.paths.chebyshev import LOOK
 from octsim.schemes.paths.check_rays import CHECKS, place_of, weight_of
 from octsim.schemes.paths.patch_by_corners import NEAR_AN_EDGE, USUALLY, Cells, reached
 from octsim.schemes.paths.tile_nodes import aim_at, aim_at_tile, followed_of
-from octsim.schemes.paths.workspace import Point, Survey, Workspace
+from octsim.schemes.paths.workspace import MOST_RAYS, Point, Survey, Workspace
 from octsim.tracing.faces import Faces, is_flat
 from octsim.tracing.follow import note_return
 from octsim.tracing.kernel import AT_VX, AT_VY, AT_X, AT_Y, FIRST_CARRIED, trace_amplitudes
-from octsim.tracing.lanes import LANES
 
 CLOSER_LOOKS = 6
 COLUMNS = 24
@@ -48,13 +47,33 @@ def recall(survey: Survey, number: int, point: Point, space: Workspace) -> None:
 
 
 @register_jitable
+def by_path(codes: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return an order in which the rays of a path stand together, and where each path begins.
+
+    Those of one block of rays do already.
+    """
+    order, firsts = np.empty(codes.size, np.int64), np.empty(codes.size + 1, np.int64)
+    done = np.zeros(codes.size, np.bool_)
+    count, paths = 0, 0
+    for begin in range(codes.size):
+        if done[begin]:
+            continue
+        firsts[paths], paths = count, paths + 1
+        for i in range(begin, codes.size):
+            if codes[i] == codes[begin]:
+                order[count], done[i], count = i, True, count + 1
+    firsts[paths] = count
+    return order, firsts[: paths + 1]
+
+
+@register_jitable
 def survey_of(
     point: Point, root: Tile, n: int, m: int, max_intersections: int, min_amplitude: float,
     extrapolation: float, space: Workspace,
 ) -> tuple[Survey, float, int]:  # fmt: skip
     """Trace the whole tree from n x m nodes of a tile: paths, faint rays a node, segments.
 
-    Check rays go with them, in the same block.
+    Check rays go with them.
     """
     aim_at_tile(point, root, n, m, LOOK, space.beam)
     check_s, check_v = np.empty(CHECKS), np.empty(CHECKS)
@@ -71,30 +90,28 @@ def survey_of(
         point.faces, beam, point.detector, Acceptance(np.inf, np.inf), point.focus,
         max_intersections, min_amplitude,
     )  # fmt: skip
-    codes = labels[1]
-    # one block of rays, so the rays of a path stand together
-    firsts = np.flatnonzero(np.append(True, codes[1:] != codes[:-1])[: codes.size])
-    lasts = np.append(firsts[1:], codes.size)[: firsts.size]
+    order, firsts = by_path(labels[1])
+    paths = firsts.size - 1
     survey = Survey(
         root,
         (n, m),
-        codes[firsts],
-        firsts,
-        lasts,
+        labels[1][order][firsts[:paths]],
+        firsts[:paths],
+        firsts[1:],
         extrapolation,
-        np.zeros(firsts.size),
-        np.zeros(firsts.size),
-        labels[0],
-        numbers[FIRST_CARRIED],
-        numbers[AT_X],
-        numbers[AT_Y],
-        numbers[AT_VX],
-        numbers[AT_VY],
+        np.zeros(paths),
+        np.zeros(paths),
+        labels[0][order],
+        numbers[FIRST_CARRIED][order],
+        numbers[AT_X][order],
+        numbers[AT_Y][order],
+        numbers[AT_VX][order],
+        numbers[AT_VY][order],
         check_s,
         check_v,
     )
     every = Cells(0, n - 1, 0, m - 1)
-    for p in range(firsts.size):
+    for p in range(paths):
         recall(survey, p, point, space)
         survey.strongest[p] = followed_of(space, count)[1]
         survey.bound[p], _ = reached(
@@ -192,7 +209,7 @@ def survey_aperture(
         close, lost, traced = survey_of(
             point,
             tile,
-            min(COLUMNS, (LANES - CHECKS) // m),
+            min(COLUMNS, (MOST_RAYS - CHECKS) // m),
             m,
             max_intersections,
             min_amplitude,

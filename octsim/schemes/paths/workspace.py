@@ -22,6 +22,10 @@ from octsim.tracing.lanes import LANES
 from octsim.tracing.light_paths import LONGEST
 
 
+MOST_RAYS = 2 * LANES
+"""Rays of a survey: two blocks."""
+
+
 class Point(NamedTuple):
     """What is integrated: the same for all paths and tiles."""
 
@@ -106,10 +110,10 @@ class WeightedRays(NamedTuple):
 @register_jitable
 def room_for_point() -> Workspace:
     """Make the room that a point's tiles are worked on in."""
-    square = (HIGHEST, HIGHEST)
+    square, most = (HIGHEST, HIGHEST), MOST_RAYS
     return Workspace(
-        Beam(np.empty(LANES), np.empty(LANES), np.empty(LANES), np.ones(LANES), np.arange(LANES)),
-        room_for_bundle(), room_for_following(), room_for_line(), room_for_search(),
+        Beam(np.empty(most), np.empty(most), np.empty(most), np.ones(most), np.arange(most)),
+        room_for_bundle(most), room_for_following(), room_for_line(), room_for_search(),
         Map(np.empty(square), np.empty(square), np.empty(square), np.empty(square)),
         np.empty(square), np.empty(square), np.empty(square), np.empty(square), np.empty(square),
         np.empty(square), np.empty(square),
