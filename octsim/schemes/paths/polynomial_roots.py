@@ -20,6 +20,7 @@ from octsim.schemes.paths.chebyshev import HIGHEST
 
 MOST_COEFFICIENTS = 2 * HIGHEST
 _DEPTH = 40  # halves of halves; what is left there is one place
+_ROUNDED = 1e-13  # of the largest coefficient: below that its parts' are rounding
 _STEPS = 60
 _CLOSE = 1e-10  # of the interval
 
@@ -111,6 +112,15 @@ def _sign_changes(coefficients: NDArray[np.float64], n: int) -> int:
     return changes
 
 
+@register_jitable
+def _largest(coefficients: NDArray[np.float64], n: int) -> float:
+    """Return the largest magnitude of the coefficients."""
+    largest = 0.0
+    for j in range(n):
+        largest = max(largest, abs(coefficients[j]))
+    return largest
+
+
 @register_jitable(forceinline=True)
 def _halve(whole: NDArray[np.float64], n: int, left: NDArray[np.float64]) -> None:
     """Put the coefficients of the left half into `left`, and of the right one in their place."""
@@ -173,10 +183,11 @@ def append_roots(
     changes = _sign_changes(coefficients, n)
     if changes == 0:
         return count
+    rounding = _ROUNDED * _largest(coefficients, n)
     room[0, :n] = coefficients[:n]
     starts, depths = np.empty(_DEPTH + 2), np.empty(_DEPTH + 2, np.int64)
     starts[0], depths[0], top = 0.0, 0, 0
-    while top >= 0:
+    while top >= 0 and count < roots.size:
         start, depth = starts[top], depths[top]
         width = 0.5**depth
         if top > 0 or depth > 0:
@@ -184,7 +195,8 @@ def append_roots(
         if changes == 1:
             roots[count] = start + width * _only_root(room[top], n, binomials)
             count += 1
-        elif changes > 1 and depth == _DEPTH:
+        elif changes > 1 and (depth == _DEPTH or _largest(room[top], n) <= rounding):
+            # as good as zero: one place, whatever the rounding there
             if (room[top, 0] > 0) != (room[top, n - 1] > 0):
                 roots[count] = start + 0.5 * width
                 count += 1
