@@ -1,12 +1,12 @@
 """Following rays along one light path: those that take it, to where they would leave the focus."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from octsim.base.records import layout
 from octsim.optics.beam import Beam
 from octsim.optics.detector import Detector, at_plane, rim_margin, to_fibre
 from octsim.tracing.blocks import advance_chosen, choose, keep, launch, meet_nearest, split
@@ -17,7 +17,7 @@ from octsim.tracing.lanes import CARRIED, LANES, PATH, RAY, direction, position
 _CARRIED, _launch, _move, _split, _ = AMPLITUDE
 
 
-class Bundle(NamedTuple):
+class Bundle:
     """What becomes of N rays on one light path."""
 
     followed: NDArray[np.bool_]
@@ -36,7 +36,7 @@ class Bundle(NamedTuple):
     """Path from the focus to the fibre, (N,), µm."""
 
 
-class FollowRoom(NamedTuple):
+class FollowRoom:
     """Room for a block of rays on its way."""
 
     blocks: NDArray[np.float64]
@@ -49,23 +49,15 @@ class FollowRoom(NamedTuple):
     chosen: NDArray[np.uint32]
 
 
-@register_jitable
-def room_for_following() -> FollowRoom:
-    """Make the room that `follow` works in."""
-    return FollowRoom(
-        np.empty((3, CARRIED + _CARRIED * LANES)), np.empty(LANES), np.empty(LANES),
-        np.empty(LANES), np.empty(LANES), np.empty(LANES, np.bool_), np.empty(LANES, np.int64),
-        np.empty(LANES, np.uint32),
-    )  # fmt: skip
-
-
-@register_jitable
-def room_for_bundle() -> Bundle:
-    """Make the room that `follow` fills."""
-    return Bundle(
-        np.empty(LANES, np.bool_), np.empty(LANES), np.empty(LANES), np.empty(LANES),
-        np.empty(LANES), np.empty(LANES), np.empty(LANES),
-    )  # fmt: skip
+_each = (LANES,)
+BUNDLE = layout(
+    Bundle, followed=_each, x=_each, y=_each, cos=_each, inside=_each, amplitude=_each,
+    optical_path_length=_each,
+)  # fmt: skip
+FOLLOW_ROOM = layout(
+    FollowRoom, blocks=(3, CARRIED + _CARRIED * LANES), distance=_each, cos_i=_each, cos_met=_each,
+    cos_t=_each, wanted=_each, face=_each, chosen=_each,
+)  # fmt: skip
 
 
 @register_jitable

@@ -13,6 +13,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from octsim.base.records import layout
 from octsim.optics.detector import falloff
 from octsim.schemes.paths.aperture_tiles import Tile
 from octsim.schemes.paths.chebyshev import HIGHEST, polynomials
@@ -25,7 +26,7 @@ LESS_S, LESS_V = 2, 1
 """Orders that a rougher rule has less along s and v. Errors along s can alternate in size."""
 
 
-class Map(NamedTuple):
+class Map:
     """Where the rays of a tile return to, as Chebyshev coefficients in (s, v)."""
 
     x: NDArray[np.float64]
@@ -38,7 +39,7 @@ class Map(NamedTuple):
     """`octsim.optics.detector.rim_margin`."""
 
 
-class TileLine(NamedTuple):
+class TileLine:
     """A `Map` at one ξ: coefficients in v, and room to work in."""
 
     x: NDArray[np.float64]
@@ -61,15 +62,12 @@ class TileLine(NamedTuple):
     rough: NDArray[np.float64]
 
 
-@register_jitable
-def room_for_line() -> TileLine:
-    """Make the room that `moments` works in."""
-    size = HIGHEST
-    return TileLine(
-        np.empty(size), np.empty(size), np.empty(size), np.empty(size), np.empty(size),
-        np.empty(size), np.empty(size), np.empty(size), np.empty(_CUTS), np.empty(_CUTS),
-        np.empty(_CUTS), np.empty(size), np.empty(size),
-    )  # fmt: skip
+_square, _each, _cuts = (HIGHEST, HIGHEST), (HIGHEST,), (_CUTS,)
+MAP = layout(Map, x=_square, y=_square, cos=_square, inside=_square)
+TILE_LINE = layout(
+    TileLine, x=_each, y=_each, cos=_each, inside=_each, rough_x=_each, rough_y=_each, t=_each,
+    u=_each, cuts=_cuts, places=_cuts, margins=_cuts, exact=_each, rough=_each,
+)  # fmt: skip
 
 
 class Cut(NamedTuple):

@@ -35,7 +35,7 @@ def recall(survey: Survey, number: int, point: Point, space: Workspace) -> None:
 
 @register_jitable
 def survey_of(
-    point: Point, root: Tile, n: int, m: int, max_intersections: int, min_amplitude: float,
+    faces: Faces, point: Point, root: Tile, n: int, m: int, max_intersections: int, min_amplitude: float,
     extrapolation: float, space: Workspace,
 ) -> tuple[Survey, float, int]:  # fmt: skip
     """Trace the whole tree from n x m nodes of a tile: paths, faint rays a node, segments."""
@@ -46,7 +46,7 @@ def survey_of(
     )  # fmt: skip
     # all that returns: rays beside the detector tell where between them a patch is
     labels, numbers, segments, outcomes = trace_amplitudes(
-        point.faces, beam, point.detector, Acceptance(np.inf, np.inf), point.focus,
+        faces, beam, point.detector, Acceptance(np.inf, np.inf), point.focus,
         max_intersections, min_amplitude,
     )  # fmt: skip
     codes = labels[1]
@@ -74,7 +74,7 @@ def survey_of(
         recall(survey, p, point, space)
         survey.strongest[p] = followed_of(space, n * m)[1]
         survey.bound[p], _ = reached(
-            space.bundle, n, m, point.nodes_s[LOOK, n], point.nodes_v[LOOK, m], root, every,
+            space.bundle, n, m, point.tables.nodes_s[LOOK, n], point.tables.nodes_v[LOOK, m], root, every,
             point.symmetric, point.detector.radius, extrapolation,
         )  # fmt: skip
     return survey, outcomes[Outcome.FAINT] / (n * m), segments
@@ -103,13 +103,13 @@ def curved(faces: Faces, code: int) -> bool:
 
 
 @register_jitable
-def closer(point: Point, survey: Survey) -> tuple[bool, Tile]:
+def closer(faces: Faces, point: Point, survey: Survey) -> tuple[bool, Tile]:
     """Return whether not all of a survey's columns met more than planes, and the part that did."""
     n, m = survey.orders
-    root, along_s = survey.root, point.nodes_s[LOOK, n]
+    root, along_s = survey.root, point.tables.nodes_s[LOOK, n]
     left, right = n, -1
     for p in range(survey.code.size):
-        if curved(point.faces, survey.code[p]):
+        if curved(faces, survey.code[p]):
             for i in range(survey.begin[p], survey.end[p]):
                 column = survey.ray[i] // m
                 # at the top of the aperture all columns are one place
@@ -133,6 +133,7 @@ def part_of_faint(survey: Survey, amplitude: float) -> float:
 
 @register_jitable
 def survey_aperture(
+    faces: Faces,
     point: Point,
     orders: tuple[int, int],
     max_intersections: int,
@@ -153,16 +154,17 @@ def survey_aperture(
     n, m = orders
     root = Tile(0.0 if point.symmetric else -1.0, 1.0, 0.0, 1.0)
     wide, lost, segments = survey_of(
-        point, root, n, m, max_intersections, min_amplitude, USUALLY, space
+        faces, point, root, n, m, max_intersections, min_amplitude, USUALLY, space
     )
     close = wide
     for _ in range(CLOSER_LOOKS):
-        edge, tile = closer(point, close)
+        edge, tile = closer(faces, point, close)
         much = area(tile, point.symmetric) > 0.8 * area(close.root, point.symmetric)
         if not edge or (much and close.extrapolation == NEAR_AN_EDGE):
             break
         # past the cylinder's edge: near it the light's way changes fast
         close, lost, traced = survey_of(
+            faces,
             point,
             tile,
             min(COLUMNS, LANES // m),
@@ -174,7 +176,7 @@ def survey_aperture(
         )
         segments += traced
     narrowed = close.extrapolation == NEAR_AN_EDGE
-    bends = np.array([curved(point.faces, code) for code in wide.code])
+    bends = np.array([curved(faces, code) for code in wide.code])
     keep = ~bends if narrowed else np.zeros(wide.code.size, np.bool_)
-    also = np.array([curved(point.faces, code) or not narrowed for code in close.code])
+    also = np.array([curved(faces, code) or not narrowed for code in close.code])
     return only(wide, keep), only(close, also), lost, segments

@@ -23,7 +23,7 @@ _CLOSER = 1 / 3  # error of a rule, over how far a rougher one is from it, at mo
 def aim_at_tile(point: Point, tile: Tile, n: int, m: int, kind: int, beam: Beam) -> None:
     """Aim a beam's first n x m rays at the nodes of a tile."""
     radius = point.detector.objective_radius
-    along_s, along_v = point.nodes_s[kind, n], point.nodes_v[kind, m]
+    along_s, along_v = point.tables.nodes_s[kind, n], point.tables.nodes_v[kind, m]
     for i in range(n):
         xi = across(tile.s_min + (tile.s_max - tile.s_min) * along_s[i], point.symmetric)
         for j in range(m):
@@ -38,8 +38,8 @@ def map_tile(
     point: Point, tile: Tile, n: int, m: int, stride: int, kind: int, space: Workspace
 ) -> None:
     """Fit polynomials to where a tile's rays return to; `stride` rays have the same s."""
-    bundle, along_s, along_v = space.bundle, point.nodes_s[kind, n], point.nodes_v[kind, m]
-    to_s, to_v = point.transforms_s[kind, n], point.transforms_v[kind, m]
+    bundle, along_s, along_v = space.bundle, point.tables.nodes_s[kind, n], point.tables.nodes_v[kind, m]
+    to_s, to_v = point.tables.transforms_s[kind, n], point.tables.transforms_v[kind, m]
     values, others = space.values, space.others
     for j in range(m):
         v = tile.v_min + (tile.v_max - tile.v_min) * along_v[j]
@@ -65,7 +65,7 @@ def map_tile(
 def weigh(point: Point, tile: Tile, n: int, m: int, tolerance: float, space: Workspace) -> float:
     """Find the weight of each node of a tile, and by a rougher rule; return their sum."""
     cut = Cut(space.returns, n, m, tile, point.symmetric, point.detector.radius)
-    total = moments(cut, tolerance, point.rules, space.line, space.exact, space.rough)
+    total = moments(cut, tolerance, point.tables.rules, space.line, space.exact, space.rough)
     _to_nodes(point, space.exact, n, m, n, m, space.between, space.weight)
     _to_nodes(point, space.rough, n - LESS_S, m - LESS_V, n, m, space.between, space.rough_weight)
     for i in range(n):
@@ -81,7 +81,7 @@ def _to_nodes(
     between: NDArray[np.float64], weight: NDArray[np.float64],
 ) -> None:  # fmt: skip
     """Turn p x q integrals of polynomials into the weights of n x m nodes."""
-    along_s, along_v = point.transforms_s[FIT, n], point.transforms_v[FIT, m]
+    along_s, along_v = point.tables.transforms_s[FIT, n], point.tables.transforms_v[FIT, m]
     for a in range(p):
         for j in range(m):
             total = 0.0
@@ -106,7 +106,7 @@ def weigh_crudely(
     Returns the magnitude of the field, and its error, taken for a fixed part of it.
     """
     bundle, radius = space.bundle, point.detector.radius
-    along_s, along_v = point.nodes_s[kind, n], point.nodes_v[kind, m]
+    along_s, along_v = point.tables.nodes_s[kind, n], point.tables.nodes_v[kind, m]
     multiplicity, size = images(point.symmetric), 0.0
     s_width, v_width = tile.s_max - tile.s_min, tile.v_max - tile.v_min
     for i in range(n):
@@ -226,7 +226,7 @@ def field_errors(point: Point, n: int, m: int, space: Workspace) -> tuple[float,
             phase = point.k_max * bundle.optical_path_length[i * m + j]
             values[i, j] = amplitude * math.cos(phase)
             others[i, j] = amplitude * math.sin(phase)
-    to_s, to_v = point.transforms_s[FIT, n], point.transforms_v[FIT, m]
+    to_s, to_v = point.tables.transforms_s[FIT, n], point.tables.transforms_v[FIT, m]
     transform(values, n, m, to_s, to_v, space.between, space.exact)
     transform(others, n, m, to_s, to_v, space.between, space.rough)
     along_s, along_v = 0.0, 0.0

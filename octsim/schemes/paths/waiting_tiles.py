@@ -7,6 +7,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from octsim.base.records import layout, room
 from octsim.schemes.paths.aperture_tiles import Tile, across, halves
 
 MOST_TILES = 4096
@@ -31,7 +32,7 @@ class OpenTile(NamedTuple):
     """Error estimate with fewer nodes; infinite if there were none."""
 
 
-class WaitingTiles(NamedTuple):
+class WaitingTiles:
     """Room for open tiles, in no order."""
 
     rows: NDArray[np.float64]
@@ -40,10 +41,14 @@ class WaitingTiles(NamedTuple):
     """How many wait, (1,)."""
 
 
-@register_jitable
+WAITING_TILES = layout(WaitingTiles, rows=(MOST_TILES, 10), size=(1,))
+
+
 def room_for_waiting() -> WaitingTiles:
-    """Make the room that tiles wait in."""
-    return WaitingTiles(np.empty((MOST_TILES, 10)), np.zeros(1, np.int64))
+    """Make the room that tiles wait in; none do."""
+    made = room(WaitingTiles, WAITING_TILES)
+    made.size[0] = 0
+    return made
 
 
 @register_jitable

@@ -1,0 +1,40 @@
+"""Records: room that compiled code works in, as one block of memory.
+
+A named tuple of arrays reaches a compiled function as seven numbers for each array, and whoever
+holds it counts references to each; the compiler takes most of its time over that. A record is one
+address, and where its arrays lie and how large they are is known when the code is compiled.
+"""
+
+from typing import Any, TypeVar, get_args, get_type_hints
+
+import numpy as np
+
+Fields = TypeVar("Fields")
+_ARRAYS = {np.dtype(np.bool_): np.dtype(np.int8)}  # numba has no arrays of bool in a record
+
+
+def layout(of: type, **shapes: "tuple[int, ...] | np.dtype[Any]") -> "np.dtype[Any]":
+    """Return the layout of a record.
+
+    Parameters
+    ----------
+    of : type
+        A class whose annotations name the fields: arrays, numbers and other records.
+    **shapes : tuple of int or dtype
+        Shape of each array, and layout of each record within this one.
+    """
+    fields: list[tuple[Any, ...]] = []
+    for name, kind in get_type_hints(of).items():
+        shape = shapes.get(name)
+        if isinstance(shape, tuple):
+            number = np.dtype(get_args(get_args(kind)[1])[0])
+            fields.append((name, _ARRAYS.get(number, number), shape))
+        else:
+            fields.append((name, np.dtype(kind) if shape is None else shape))
+    return np.dtype(fields, align=True)
+
+
+def room(of: type[Fields], dtype: "np.dtype[Any]") -> Fields:
+    """Make a record of some layout; its numbers are any. A type checker takes it for its class."""
+    made: Fields = np.recarray(1, dtype)[0]
+    return made
