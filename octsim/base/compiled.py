@@ -1,13 +1,19 @@
 """Compiling to machine code, kept on disk for as long as no source behind it changes."""
 
+import hashlib
+import platform
 from collections.abc import Callable
+from importlib.metadata import version
 from pathlib import Path
 from types import FunctionType
 from typing import Any, TypeVar
 
+import llvmlite.binding
 import numba
 
-from octsim.base.provenance import PACKAGE, source_digest
+from octsim.base.compile_whole import as_a_whole
+from octsim.base.kept_code import KeptCode
+from octsim.base.provenance import source_digest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -19,28 +25,46 @@ def _sources(function: Callable[..., Any]) -> tuple[str | Path, ...]:
     return function.__module__, *parts
 
 
+def _digest(function: Callable[..., Any]) -> str:
+    """Digest all that a function's code follows from: sources, compiler and processor."""
+    settings: Any = numba.config
+    parts = (
+        source_digest(*_sources(function), "octsim.base.compiled"),
+        platform.python_version(),
+        version("numba"),
+        version("llvmlite"),
+        settings.CPU_NAME or llvmlite.binding.get_host_cpu_name(),
+        settings.CPU_FEATURES,
+        settings.OPT,
+    )
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:12]
+
+
 def compiled(**options: Any) -> Callable[[Function], Function]:
     """Compile a function when it is first called, without the interpreter's lock.
 
     numba's own cache looks at the time of the function's file alone and would go on using old
-    formulas from other files; here the cache's folder is named after the digest of all of them,
-    those of functions that it is closed over too, and after the processor that NUMBA_CPU_NAME asks
-    for, if it does.
+    formulas from other files; here code is kept below the digest of all of them, those of functions
+    that it is closed over too (`octsim.base.kept_code`).
     Options are those of `numba.njit`.
     """
 
     def compile_(function: Function) -> Function:
-        settings: Any = numba.config
-        asked = f"-{settings.CPU_NAME}" if settings.CPU_NAME else ""
-        digest = source_digest(*_sources(function))
-        folder = PACKAGE / "__pycache__" / f"numba-{digest}{asked}"
-        elsewhere, settings.CACHE_DIR = settings.CACHE_DIR, str(folder)
-        try:
-            dispatcher: Function = numba.njit(
-                cache=True, nogil=True, error_model="numpy", **options
-            )(function)
-        finally:
-            settings.CACHE_DIR = elsewhere
-        return dispatcher
+        dispatcher: Any = numba.njit(nogil=True, error_model="numpy", **options)(function)
+        if not isinstance(dispatcher, FunctionType):  # which it is with NUMBA_DISABLE_JIT
+            dispatcher._cache = KeptCode(function, _digest(function))
+            dispatcher.compile = _whole(dispatcher.compile)
+        made: Function = dispatcher
+        return made
 
     return compile_
+
+
+def _whole(compile_: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """Return a dispatcher's method `compile`, for the whole of what it compiles."""
+
+    def whole(sig: Any) -> Any:
+        with as_a_whole():
+            return compile_(sig)
+
+    return whole

@@ -1,0 +1,85 @@
+"""Having the compiler optimise a function with all that it calls once, and not piece by piece.
+
+numba makes machine code of every function that another calls, and links what it had optimised into
+the caller, where it is optimised and made machine code of again, level by level. Of code that only
+others call, none of that is used. Within `as_a_whole` such parts are kept as they are for linking, and
+the whole is optimised when all is together.
+
+What is replaced for that are methods of numba that are not public. Where a numba has none of that
+name or its shape is another, `FITS` is false and all is compiled as numba does: to the same numbers,
+in about three times the time.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import local
+from typing import Any
+
+import llvmlite.binding
+from numba.core import codegen
+from numba.core.event import Listener, install_listener
+
+_library: Any = codegen.CPUCodeLibrary
+_OPTIMISE, _MAKE_CODE, _TO_LINK = (
+    "_optimize_final_module", "_finalize_final_module", "_get_module_for_linking"
+)  # fmt: skip
+FITS = all(hasattr(_library, name) for name in (_OPTIMISE, _MAKE_CODE, _TO_LINK))
+_ENVIRONMENT = "NumbaEnv"  # of global variables that numba looks up in each function's code
+_compiling = local()
+
+
+class _Depth(Listener):  # type: ignore[misc]
+    """Counts how many functions are being compiled, each for the one before."""
+
+    def on_start(self, event: Any) -> None:
+        _compiling.depth += 1
+
+    def on_end(self, event: Any) -> None:
+        _compiling.depth -= 1
+
+
+def _is_part() -> bool:
+    return getattr(_compiling, "depth", 0) > 1
+
+
+if FITS:
+    _optimise, _make_code = getattr(_library, _OPTIMISE), getattr(_library, _MAKE_CODE)
+
+    def _optimise_the_whole(self: Any) -> None:
+        if not _is_part():
+            _optimise(self)
+
+    def _make_code_of_the_whole(self: Any) -> None:
+        if _is_part():
+            self._finalized = True
+            getattr(self, _TO_LINK)()  # keeps a copy, for those that link it
+            self._finalized = False
+            self._final_module = llvmlite.binding.parse_assembly(_variables_of(self))
+        _make_code(self)
+
+    setattr(_library, _OPTIMISE, _optimise_the_whole)
+    setattr(_library, _MAKE_CODE, _make_code_of_the_whole)
+
+
+def _variables_of(library: Any) -> str:
+    """Return a module that has the variables of a library which numba looks up, and no code."""
+    module = library._final_module
+    names = [one.name for one in module.global_variables if _ENVIRONMENT in one.name]
+    lines = [f'@"{name}" = common global ptr null' for name in names]
+    head = f'target datalayout = "{module.data_layout}"\ntarget triple = "{module.triple}"'
+    return "\n".join((head, *lines))
+
+
+@contextmanager
+def as_a_whole() -> Iterator[None]:
+    """Compile what is compiled within, each for itself, as a whole with all that it calls."""
+    around = getattr(_compiling, "depth", 0)
+    _compiling.depth = 0
+    try:
+        if around:  # a whole within another has its own count
+            yield
+        else:
+            with install_listener("numba:compile", _Depth()):
+                yield
+    finally:
+        _compiling.depth = around
