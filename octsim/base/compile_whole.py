@@ -42,11 +42,16 @@ def _is_part() -> bool:
     return getattr(_compiling, "depth", 0) > 1
 
 
+def _waits() -> bool:
+    """Return whether what is being compiled is optimised with the whole alone."""
+    return _is_part() and not _compiling.parts_first
+
+
 if FITS:
     _optimise, _make_code = getattr(_library, _OPTIMISE), getattr(_library, _MAKE_CODE)
 
     def _optimise_the_whole(self: Any) -> None:
-        if not _is_part():
+        if not _waits():
             _optimise(self)
 
     def _make_code_of_the_whole(self: Any) -> None:
@@ -71,10 +76,17 @@ def _variables_of(library: Any) -> str:
 
 
 @contextmanager
-def as_a_whole() -> Iterator[None]:
-    """Compile what is compiled within, each for itself, as a whole with all that it calls."""
-    around = getattr(_compiling, "depth", 0)
-    _compiling.depth = 0
+def as_a_whole(parts_first: bool) -> Iterator[None]:
+    """Compile what is compiled within, each for itself, as a whole with all that it calls.
+
+    Parameters
+    ----------
+    parts_first : bool
+        Whether parts are optimised by themselves too, before the whole is. Some loops are computed
+        in lanes only then.
+    """
+    around, around_first = getattr(_compiling, "depth", 0), getattr(_compiling, "parts_first", False)
+    _compiling.depth, _compiling.parts_first = 0, parts_first
     try:
         if around:  # a whole within another has its own count
             yield
@@ -82,4 +94,4 @@ def as_a_whole() -> Iterator[None]:
             with install_listener("numba:compile", _Depth()):
                 yield
     finally:
-        _compiling.depth = around
+        _compiling.depth, _compiling.parts_first = around, around_first

@@ -40,31 +40,38 @@ def _digest(function: Callable[..., Any]) -> str:
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:12]
 
 
-def compiled(**options: Any) -> Callable[[Function], Function]:
+def compiled(*, parts_first: bool = False, **options: Any) -> Callable[[Function], Function]:
     """Compile a function when it is first called, without the interpreter's lock.
 
     numba's own cache looks at the time of the function's file alone and would go on using old
     formulas from other files; here code is kept below the digest of all of them, those of functions
     that it is closed over too (`octsim.base.kept_code`).
-    Options are those of `numba.njit`.
+    What it calls is optimised once, with it (`octsim.base.compile_whole`).
+
+    Parameters
+    ----------
+    parts_first : bool
+        Whether what it calls is optimised apart too, before.
+    **options
+        Those of `numba.njit`.
     """
 
     def compile_(function: Function) -> Function:
         dispatcher: Any = numba.njit(nogil=True, error_model="numpy", **options)(function)
         if not isinstance(dispatcher, FunctionType):  # which it is with NUMBA_DISABLE_JIT
             dispatcher._cache = KeptCode(function, _digest(function))
-            dispatcher.compile = _whole(dispatcher.compile)
+            dispatcher.compile = _whole(dispatcher.compile, parts_first)
         made: Function = dispatcher
         return made
 
     return compile_
 
 
-def _whole(compile_: Callable[[Any], Any]) -> Callable[[Any], Any]:
+def _whole(compile_: Callable[[Any], Any], parts_first: bool) -> Callable[[Any], Any]:
     """Return a dispatcher's method `compile`, for the whole of what it compiles."""
 
     def whole(sig: Any) -> Any:
-        with as_a_whole():
+        with as_a_whole(parts_first):
             return compile_(sig)
 
     return whole
