@@ -2,12 +2,11 @@
 
 numba makes machine code of every function that another calls, and links what it had optimised into
 the caller, where it is optimised and made machine code of again, level by level. Of code that only
-others call, none of that is used. Within `as_a_whole` such parts are kept as they are for linking, and
-the whole is optimised when all is together.
+others call, none of that is used. Within `as_a_whole` such parts are kept as they are, for linking,
+and the whole is optimised when all is together.
 
-What is replaced for that are methods of numba that are not public. Where a numba has none of that
-name or its shape is another, `FITS` is false and all is compiled as numba does: to the same numbers,
-in about three times the time.
+What is replaced for that are methods of numba that are not public. Where a numba has none of these
+names, `FITS` is false and all is compiled as numba does: to the same numbers, in twice the time.
 """
 
 from collections.abc import Iterator
@@ -28,13 +27,13 @@ _ENVIRONMENT = "NumbaEnv"  # of global variables that numba looks up in each fun
 _compiling = local()
 
 
-class _Depth(Listener):  # type: ignore[misc]
+class _Depth(Listener):
     """Counts how many functions are being compiled, each for the one before."""
 
-    def on_start(self, event: Any) -> None:
+    def on_start(self, _event: Any) -> None:
         _compiling.depth += 1
 
-    def on_end(self, event: Any) -> None:
+    def on_end(self, _event: Any) -> None:
         _compiling.depth -= 1
 
 
@@ -85,7 +84,10 @@ def as_a_whole(parts_first: bool) -> Iterator[None]:
         Whether parts are optimised by themselves too, before the whole is. Some loops are computed
         in lanes only then.
     """
-    around, around_first = getattr(_compiling, "depth", 0), getattr(_compiling, "parts_first", False)
+    around, around_first = (
+        getattr(_compiling, "depth", 0),
+        getattr(_compiling, "parts_first", False),
+    )
     _compiling.depth, _compiling.parts_first = 0, parts_first
     try:
         if around:  # a whole within another has its own count

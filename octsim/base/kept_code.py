@@ -4,7 +4,6 @@ import logging
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 import numba
@@ -12,13 +11,14 @@ from filelock import FileLock, Timeout
 from numba.core.caching import FunctionCache, _Cache
 
 from octsim.base.code_folder import folder_for, nowhere, places, remove_unused, say, use
+from octsim.base.compile_time import count
 
 _LONGEST = 1800.0  # s to wait for another process, which may be stopped
-_LOCK = "compiling.lock"
 _said: set[str] = set()
+_began: list[float] = []  # of what is being compiled
 
 
-class KeptCode(_Cache):  # type: ignore[misc]
+class KeptCode(_Cache):
     """The compiled code of one function, as numba asks for it.
 
     Damaged files are as good as none, and a lock that the file system lacks is done without.
@@ -68,11 +68,14 @@ class KeptCode(_Cache):  # type: ignore[misc]
         if found is None:
             _say_once("compiling the tracer for this machine … (once)")
             self._began = time.monotonic()
+            _began.append(self._began)
         return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep the code for some types; what can't be kept is said, and compiled anew next time."""
-        compile_seconds.add(time.monotonic() - self._began)
+        if self._began == min(_began):  # not while compiling what calls this
+            count(time.monotonic() - self._began)
+        _began.remove(self._began)
         try:
             if self._enabled and (files := self._opened()):
                 with suppress(Exception):  # an index that can't be read
@@ -95,7 +98,7 @@ class KeptCode(_Cache):  # type: ignore[misc]
                 settings: Any = numba.config
                 elsewhere, settings.CACHE_DIR = settings.CACHE_DIR, str(folder)
                 try:
-                    self._files = FunctionCache(self._function)
+                    self._files = FunctionCache(self._function)  # type: ignore[no-untyped-call]
                 finally:
                     settings.CACHE_DIR = elsewhere
                 use(folder)
@@ -112,7 +115,7 @@ class KeptCode(_Cache):  # type: ignore[misc]
         folder = folder_for(self._digest, places())
         if folder is None:
             return False
-        lock = FileLock(folder / _LOCK)
+        lock = FileLock(folder / f"{self._function.__qualname__}.lock")
         try:
             folder.mkdir(exist_ok=True)
             try:
@@ -132,27 +135,8 @@ class KeptCode(_Cache):  # type: ignore[misc]
             self._lock = None
 
 
-class _Seconds:
-    """Counts the seconds that this process has compiled for."""
-
-    def __init__(self) -> None:
-        self.total = 0.0
-
-    def add(self, seconds: float) -> None:
-        """Count some more."""
-        self.total += seconds
-
-
-compile_seconds = _Seconds()
-
-
 def _say_once(text: str) -> None:
     if text not in _said:
         _said.add(text)
         say(text)
         logging.getLogger(__name__).info("%s", text)
-
-
-def lock_of(folder: Path) -> Path:
-    """Return the file that is locked while code for a folder is compiled."""
-    return folder / _LOCK

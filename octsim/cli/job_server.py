@@ -21,6 +21,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from octsim.base.code_folder import VARIABLE, places, writable
+
 SOCKET = "OCTSIM_JOB_SERVER"
 """Environment variable with the path of the socket."""
 _LOOK = 1.0  # s, between looks at whether the parent is still there
@@ -45,6 +47,8 @@ def start() -> "tempfile.TemporaryDirectory[str] | None":
             listener.bind(path)
         except OSError:
             return None
+        if writable(places()) is None:  # then the jobs of this run share what they compile
+            os.environ[VARIABLE] = f"{folder.name}/compiled"
         listener.listen(64)  # from now on who asks is heard
         # -P, as what stands in the folder of the run is no library
         command = [sys.executable, "-P", "-m", "octsim.cli.job_server"]

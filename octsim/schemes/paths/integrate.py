@@ -23,6 +23,7 @@ from octsim.schemes.paths.aperture_tiles import images
 from octsim.schemes.paths.chebyshev import HIGHEST, LOOK
 from octsim.schemes.paths.progress import SPARE, PathGoal, Progress, traced
 from octsim.schemes.paths.refine import settle
+from octsim.schemes.paths.strongest import strongest_first
 from octsim.schemes.paths.survey import COLUMNS, part_of_faint, recall, survey_aperture
 from octsim.schemes.paths.tile_nodes import aim_at_tile
 from octsim.schemes.paths.waiting_tiles import OpenTile, pop_strongest
@@ -103,18 +104,16 @@ def _integrate_path(
 
 @register_jitable
 def _integrate_all(
-    faces: Faces, point: Point, wide: Survey, close: Survey, orders: tuple[int, int], relative: float,
-    scale: float, budget: int, space: Workspace, rays: WeightedRays,
+    faces: Faces, point: Point, wide: Survey, close: Survey, orders: tuple[int, int],
+    relative: float, scale: float, budget: int, space: Workspace, rays: WeightedRays,
 ) -> tuple[WeightedRays, Progress, float]:  # fmt: skip
     """Integrate the paths of two surveys, the strongest first, until the rest may be left out.
 
     Returns the rays, what has become of all of them, and the largest magnitude of the field over
     the band.
     """
-    bounds = np.concatenate((wide.bound, close.bound))
-    sizes, reach = np.zeros(bounds.size), np.zeros(bounds.size)
-    order = np.argsort(-bounds, kind="mergesort")
-    rest = np.append(np.cumsum(bounds[order][::-1])[::-1], 0.0)
+    order, rest = strongest_first(wide.bound, close.bound)
+    sizes, reach = np.zeros(order.size), np.zeros(order.size)
     done, paths = 0, Progress(0, 0.0, 0.0, 0.0, 0.0, 0)
     for p in order:
         known = max(scale, _peak(sizes, reach, point.k_mid, point.k_max), 0.03 * rest[0])

@@ -102,7 +102,11 @@ def _look(
         The corner next to the axes whose nodes all take the path; its n is 0 if there is none.
     """
     tile, n, m, kind, allotment, _, _ = work
-    along_s, along_v, radius = point.tables.nodes_s[kind, n], point.tables.nodes_v[kind, m], point.detector.radius
+    along_s, along_v, radius = (
+        point.tables.nodes_s[kind, n],
+        point.tables.nodes_v[kind, m],
+        point.detector.radius,
+    )
     p, q = corner(space.bundle.followed, n, m) if kind == LOOK else (0, 0)
     missing = 0.0
     # all of the tile, or what lies to the right of the corner and above it

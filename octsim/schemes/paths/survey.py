@@ -35,8 +35,8 @@ def recall(survey: Survey, number: int, point: Point, space: Workspace) -> None:
 
 @register_jitable
 def survey_of(
-    faces: Faces, point: Point, root: Tile, n: int, m: int, max_intersections: int, min_amplitude: float,
-    extrapolation: float, space: Workspace,
+    faces: Faces, point: Point, root: Tile, n: int, m: int, max_intersections: int,
+    min_amplitude: float, extrapolation: float, space: Workspace,
 ) -> tuple[Survey, float, int]:  # fmt: skip
     """Trace the whole tree from n x m nodes of a tile: paths, faint rays a node, segments."""
     aim_at_tile(point, root, n, m, LOOK, space.beam)
@@ -49,10 +49,15 @@ def survey_of(
         faces, beam, point.detector, Acceptance(np.inf, np.inf), point.focus,
         max_intersections, min_amplitude,
     )  # fmt: skip
-    codes = labels[1]
+    codes, paths = labels[1], 0
     # one block of rays, so the rays of a path stand together
-    firsts = np.flatnonzero(np.append(True, codes[1:] != codes[:-1])[: codes.size])
-    lasts = np.append(firsts[1:], codes.size)[: firsts.size]
+    firsts, lasts = np.empty(codes.size, np.int64), np.empty(codes.size, np.int64)
+    for i in range(codes.size):
+        if i == 0 or codes[i] != codes[i - 1]:
+            firsts[paths] = i
+            paths += 1
+        lasts[paths - 1] = i + 1
+    firsts, lasts = firsts[:paths], lasts[:paths]
     survey = Survey(
         root,
         (n, m),
@@ -74,8 +79,8 @@ def survey_of(
         recall(survey, p, point, space)
         survey.strongest[p] = followed_of(space, n * m)[1]
         survey.bound[p], _ = reached(
-            space.bundle, n, m, point.tables.nodes_s[LOOK, n], point.tables.nodes_v[LOOK, m], root, every,
-            point.symmetric, point.detector.radius, extrapolation,
+            space.bundle, n, m, point.tables.nodes_s[LOOK, n], point.tables.nodes_v[LOOK, m], root,
+            every, point.symmetric, point.detector.radius, extrapolation,
         )  # fmt: skip
     return survey, outcomes[Outcome.FAINT] / (n * m), segments
 
@@ -176,7 +181,9 @@ def survey_aperture(
         )
         segments += traced
     narrowed = close.extrapolation == NEAR_AN_EDGE
-    bends = np.array([curved(faces, code) for code in wide.code])
-    keep = ~bends if narrowed else np.zeros(wide.code.size, np.bool_)
-    also = np.array([curved(faces, code) or not narrowed for code in close.code])
+    keep, also = np.empty(wide.code.size, np.bool_), np.empty(close.code.size, np.bool_)
+    for p in range(wide.code.size):
+        keep[p] = narrowed and not curved(faces, wide.code[p])
+    for p in range(close.code.size):
+        also[p] = not narrowed or curved(faces, close.code[p])
     return only(wide, keep), only(close, also), lost, segments

@@ -38,7 +38,11 @@ def map_tile(
     point: Point, tile: Tile, n: int, m: int, stride: int, kind: int, space: Workspace
 ) -> None:
     """Fit polynomials to where a tile's rays return to; `stride` rays have the same s."""
-    bundle, along_s, along_v = space.bundle, point.tables.nodes_s[kind, n], point.tables.nodes_v[kind, m]
+    bundle, along_s, along_v = (
+        space.bundle,
+        point.tables.nodes_s[kind, n],
+        point.tables.nodes_v[kind, m],
+    )
     to_s, to_v = point.tables.transforms_s[kind, n], point.tables.transforms_v[kind, m]
     values, others = space.values, space.others
     for j in range(m):

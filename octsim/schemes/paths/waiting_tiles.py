@@ -46,7 +46,7 @@ WAITING_TILES = layout(WaitingTiles, rows=(MOST_TILES, 10), size=(1,))
 
 def room_for_waiting() -> WaitingTiles:
     """Make the room that tiles wait in; none do."""
-    made = room(WaitingTiles, WAITING_TILES)
+    made: WaitingTiles = room(WAITING_TILES)
     made.size[0] = 0
     return made
 
@@ -87,6 +87,7 @@ def pop_strongest(waiting: WaitingTiles) -> OpenTile:
         Tile(row[0], row[1], row[2], row[3]), int(row[4]), int(row[5]), int(row[6]), row[7],
         row[8], row[9],
     )  # fmt: skip
-    waiting.rows[best] = waiting.rows[last]
+    for i in range(row.size):  # a slice assigned takes more than a second to compile
+        row[i] = waiting.rows[last, i]
     waiting.size[0] = last
     return strongest

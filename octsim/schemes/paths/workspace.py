@@ -43,7 +43,7 @@ TABLES = layout(
 @cache
 def tables_of(symmetric: bool) -> Tables:
     """Return the tables of scenes that are symmetric in x, or are not."""
-    made = room(Tables, TABLES)
+    made: Tables = room(TABLES)
     made.nodes_s[:], made.transforms_s[:] = tables(symmetric)
     made.nodes_v[:], made.transforms_v[:] = tables(True)
     fill_rules(made.rules)
@@ -128,7 +128,7 @@ WORKSPACE = layout(
 
 def room_for_point() -> Workspace:
     """Make the room that a point's tiles are worked on in."""
-    made = room(Workspace, WORKSPACE)
+    made: Workspace = room(WORKSPACE)
     made.beam.amplitude[:], made.beam.number[:] = 1.0, np.arange(LANES)
     return made
 
