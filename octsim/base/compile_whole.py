@@ -9,6 +9,7 @@ What is replaced for that are methods of numba that are not public. Where a numb
 names, `FITS` is false and all is compiled as numba does: to the same numbers, in twice the time.
 """
 
+import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import local
@@ -24,17 +25,24 @@ _OPTIMISE, _MAKE_CODE, _TO_LINK = (
 )  # fmt: skip
 FITS = all(hasattr(_library, name) for name in (_OPTIMISE, _MAKE_CODE, _TO_LINK))
 _ENVIRONMENT = "NumbaEnv"  # of global variables that numba looks up in each function's code
+_PARTS_BETWEEN = 100  # looks for garbage: Python's own, after so many objects, take a seventh of all
 _compiling = local()
 
 
 class _Depth(Listener):
     """Counts how many functions are being compiled, each for the one before."""
 
+    def __init__(self) -> None:
+        self.parts = 0
+
     def on_start(self, _event: Any) -> None:
         _compiling.depth += 1
 
     def on_end(self, _event: Any) -> None:
         _compiling.depth -= 1
+        self.parts += 1
+        if self.parts % _PARTS_BETWEEN == 0:
+            gc.collect()
 
 
 def _is_part() -> bool:
@@ -89,6 +97,8 @@ def as_a_whole(parts_first: bool) -> Iterator[None]:
         getattr(_compiling, "parts_first", False),
     )
     _compiling.depth, _compiling.parts_first = 0, parts_first
+    collects = gc.isenabled()
+    gc.disable()
     try:
         if around:  # a whole within another has its own count
             yield
@@ -96,4 +106,6 @@ def as_a_whole(parts_first: bool) -> Iterator[None]:
             with install_listener("numba:compile", _Depth()):
                 yield
     finally:
+        if collects:
+            gc.enable()
         _compiling.depth, _compiling.parts_first = around, around_first
