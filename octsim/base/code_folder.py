@@ -29,14 +29,12 @@ def places() -> tuple[Path, ...]:
     """Return where compiled code may lie, the first choice first.
 
     That which ``NUMBA_CACHE_DIR`` names, alone; or else beside the package's byte code, and the
-    user's folder of caches.
+    user's folder of caches, for a user who has a home.
     """
     if named := os.environ.get(VARIABLE):
         return (Path(named).absolute(),)
     beside = Path(cache_from_source(str(PACKAGE / "__init__.py"))).parent
-    with suppress(RuntimeError):  # without a home
-        return beside, user_cache_path("octsim")
-    return (beside,)
+    return tuple(place for place in (beside, user_cache_path("octsim")) if place.is_absolute())
 
 
 @cache

@@ -1,4 +1,4 @@
-"""What this process has spent on compiling, for who shows what something else takes."""
+"""What this process has spent on compiling, or on waiting for it, for who times something else."""
 
 _spent = [0.0]
 

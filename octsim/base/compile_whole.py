@@ -10,6 +10,7 @@ names, `FITS` is false and all is compiled as numba does: to the same numbers, i
 """
 
 import gc
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import local
@@ -19,13 +20,16 @@ import llvmlite.binding
 from numba.core import codegen
 from numba.core.event import Listener, install_listener
 
+from octsim.base.compile_time import count
+
 _library: Any = codegen.CPUCodeLibrary
 _OPTIMISE, _MAKE_CODE, _TO_LINK = (
     "_optimize_final_module", "_finalize_final_module", "_get_module_for_linking"
 )  # fmt: skip
 FITS = all(hasattr(_library, name) for name in (_OPTIMISE, _MAKE_CODE, _TO_LINK))
 _ENVIRONMENT = "NumbaEnv"  # of global variables that numba looks up in each function's code
-_PARTS_BETWEEN = 100  # looks for garbage: Python's own, after so many objects, take a seventh of all
+_PARTS_BETWEEN = 100
+"""Functions between looks for garbage; Python's own looks take a seventh of all."""
 _compiling = local()
 
 
@@ -103,8 +107,10 @@ def as_a_whole(parts_first: bool) -> Iterator[None]:
         if around:  # a whole within another has its own count
             yield
         else:
+            began = time.monotonic()
             with install_listener("numba:compile", _Depth()):
                 yield
+            count(time.monotonic() - began)
     finally:
         if collects:
             gc.enable()

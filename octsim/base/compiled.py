@@ -13,23 +13,25 @@ import numba
 
 from octsim.base.compile_whole import as_a_whole
 from octsim.base.kept_code import KeptCode
-from octsim.base.provenance import source_digest
+from octsim.base.provenance import PACKAGE, source_digest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def _sources(function: Callable[..., Any]) -> tuple[str | Path, ...]:
     """Return the module of a function, and the files of the functions that it is closed over."""
+    file = Path(function.__code__.co_filename)
+    own = function.__module__ if PACKAGE in file.parents else file
     held = (cell.cell_contents for cell in function.__closure__ or ())
     parts = (Path(part.__code__.co_filename) for part in held if isinstance(part, FunctionType))
-    return function.__module__, *parts
+    return own, *parts
 
 
 def _digest(function: Callable[..., Any]) -> str:
     """Digest all that a function's code follows from: sources, compiler and processor."""
     settings: Any = numba.config
     parts = (
-        source_digest(*_sources(function), "octsim.base.compiled"),
+        source_digest(*_sources(function)),
         platform.python_version(),
         version("numba"),
         version("llvmlite"),
@@ -59,19 +61,24 @@ def compiled(*, parts_first: bool = False, **options: Any) -> Callable[[Function
     def compile_(function: Function) -> Function:
         dispatcher: Any = numba.njit(nogil=True, error_model="numpy", **options)(function)
         if not isinstance(dispatcher, FunctionType):  # which it is with NUMBA_DISABLE_JIT
-            dispatcher._cache = KeptCode(function, _digest(function))
-            dispatcher.compile = _whole(dispatcher.compile, parts_first)
+            dispatcher._cache = kept = KeptCode(function, _digest(function))
+            dispatcher.compile = _whole(dispatcher.compile, kept, parts_first)
         made: Function = dispatcher
         return made
 
     return compile_
 
 
-def _whole(compile_: Callable[[Any], Any], parts_first: bool) -> Callable[[Any], Any]:
+def _whole(
+    compile_: Callable[[Any], Any], kept: KeptCode, parts_first: bool
+) -> Callable[[Any], Any]:
     """Return a dispatcher's method `compile`, for the whole of what it compiles."""
 
     def whole(sig: Any) -> Any:
-        with as_a_whole(parts_first):
-            return compile_(sig)
+        try:
+            with as_a_whole(parts_first):
+                return compile_(sig)
+        finally:
+            kept.done()
 
     return whole

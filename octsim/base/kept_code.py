@@ -1,7 +1,6 @@
 """Compiled code on disk: read where it is whole, and compiled by one process while others wait."""
 
 import logging
-import time
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
@@ -11,11 +10,9 @@ from filelock import FileLock, Timeout
 from numba.core.caching import FunctionCache, _Cache
 
 from octsim.base.code_folder import folder_for, nowhere, places, remove_unused, say, use
-from octsim.base.compile_time import count
 
 _LONGEST = 1800.0  # s to wait for another process, which may be stopped
 _said: set[str] = set()
-_began: list[float] = []  # of what is being compiled
 
 
 class KeptCode(_Cache):
@@ -35,7 +32,7 @@ class KeptCode(_Cache):
         self._function, self._digest = function, digest
         self._files: Any = None
         self._lock: FileLock | None = None
-        self._enabled, self._began = True, 0.0
+        self._enabled = True
 
     @property
     def cache_path(self) -> str:
@@ -63,19 +60,12 @@ class KeptCode(_Cache):
         found = self._read(sig, target_context)
         if found is None and self._acquire():  # another may have compiled it meanwhile
             found = self._read(sig, target_context)
-            if found is not None:
-                self._release()
-        if found is None:
+        if found is None and self._opened():  # else it is said that it is not once
             _say_once("compiling the tracer for this machine … (once)")
-            self._began = time.monotonic()
-            _began.append(self._began)
         return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep the code for some types; what can't be kept is said, and compiled anew next time."""
-        if self._began == min(_began):  # not while compiling what calls this
-            count(time.monotonic() - self._began)
-        _began.remove(self._began)
         try:
             if self._enabled and (files := self._opened()):
                 with suppress(Exception):  # an index that can't be read
@@ -85,8 +75,6 @@ class KeptCode(_Cache):
                 files.save_overload(sig, data)
         except OSError as error:
             _say_once(f"compiled code can't be kept in {self.cache_path}: {error}")
-        finally:
-            self._release()
 
     def _opened(self) -> Any:
         if self._files is None:
@@ -111,7 +99,7 @@ class KeptCode(_Cache):
         return None
 
     def _acquire(self) -> bool:
-        """Get the right to compile; return whether another process had it before."""
+        """Get the right to compile, once no other process does; return whether that came about."""
         folder = folder_for(self._digest, places())
         if folder is None:
             return False
@@ -129,7 +117,8 @@ class KeptCode(_Cache):
             return False
         return True
 
-    def _release(self) -> None:
+    def done(self) -> None:
+        """Let others compile, however this went."""
         if self._lock:
             self._lock.release()
             self._lock = None

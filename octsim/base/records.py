@@ -21,10 +21,17 @@ def layout(of: type, **shapes: "tuple[int, ...] | np.dtype[Any]") -> "np.dtype[A
         A class whose annotations name the fields: arrays, numbers and other records.
     **shapes : tuple of int or dtype
         Shape of each array, and layout of each record within this one.
+
+    Raises
+    ------
+    ValueError
+        If a field has the name of something else that records of numpy have.
     """
     fields: list[tuple[Any, ...]] = []
     for name, kind in get_type_hints(of).items():
         shape = shapes.get(name)
+        if hasattr(np.record, name):
+            raise ValueError(f"{of.__name__}.{name}: numpy's records have another {name}")
         if isinstance(shape, tuple):
             number = np.dtype(get_args(get_args(kind)[1])[0])
             fields.append((name, _ARRAYS.get(number, number), shape))

@@ -21,8 +21,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from octsim.base.code_folder import VARIABLE, places, writable
-
 SOCKET = "OCTSIM_JOB_SERVER"
 """Environment variable with the path of the socket."""
 _LOOK = 1.0  # s, between looks at whether the parent is still there
@@ -40,6 +38,8 @@ def start() -> "tempfile.TemporaryDirectory[str] | None":
 
     None where there can be none, as the folder of temporary files has too long a name for a socket.
     """
+    from octsim.base.code_folder import VARIABLE, places, writable
+
     folder = tempfile.TemporaryDirectory(prefix="octsim-", ignore_cleanup_errors=True)
     path = f"{folder.name}/jobs"
     with socket.socket(socket.AF_UNIX) as listener:

@@ -26,7 +26,8 @@ class _Lines(io.StringIO):
 def _leave_out(seconds: float, *bars: "tqdm[Any]") -> None:
     """Have bars begin when tracing did, after what compiling has taken."""
     for bar in bars:
-        bar.start_t, bar.last_print_t = bar.start_t + seconds, bar.last_print_t + seconds
+        if not bar.disable:
+            bar.start_t, bar.last_print_t = bar.start_t + seconds, bar.last_print_t + seconds
 
 
 def watched(stream: Stream) -> Stream:

@@ -84,14 +84,14 @@ def _integrate_path(
 ) -> tuple[WeightedRays, Progress]:  # fmt: skip
     """Integrate one path of a survey over the aperture; `count` rays are there already."""
     meetings = steps_of(faces, goal.code, space.face, space.through)
-    space.waiting.size[0] = 0
+    space.waiting.num[0] = 0
     progress = Progress(count, 0.0, 0.0, 0.0, 0.0, 0)
     n, m = survey.orders
     work = OpenTile(survey.root, n, m, LOOK, 1.0, survey.bound[number], np.inf)
     recall(survey, number, point, space)
     while True:
         rays, progress = settle(point, goal, work, space, rays, progress)
-        if space.waiting.size[0] == 0:
+        if space.waiting.num[0] == 0:
             return rays, progress
         work = pop_strongest(space.waiting)
         aim_at_tile(point, work.tile, work.n, work.m, work.kind, space.beam)

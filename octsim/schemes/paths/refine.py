@@ -229,7 +229,7 @@ def settle(
         Both as they are then.
     """
     stride, symmetric = work.m, point.symmetric
-    end = progress.segments > goal.budget or space.waiting.size[0] + 5 > MOST_TILES
+    end = progress.segments > goal.budget or space.waiting.num[0] + 5 > MOST_TILES
     followed, strongest = followed_of(space, work.n * work.m)
     if followed == 0:
         return rays, progress

@@ -37,28 +37,28 @@ class WaitingTiles:
 
     rows: NDArray[np.float64]
     """The numbers of each, (MOST_TILES, 10)."""
-    size: NDArray[np.int64]
+    num: NDArray[np.int64]
     """How many wait, (1,)."""
 
 
-WAITING_TILES = layout(WaitingTiles, rows=(MOST_TILES, 10), size=(1,))
+WAITING_TILES = layout(WaitingTiles, rows=(MOST_TILES, 10), num=(1,))
 
 
 def room_for_waiting() -> WaitingTiles:
     """Make the room that tiles wait in; none do."""
     made: WaitingTiles = room(WAITING_TILES)
-    made.size[0] = 0
+    made.num[0] = 0
     return made
 
 
 @register_jitable
 def push(waiting: WaitingTiles, one: OpenTile) -> None:
     """Have a tile wait."""
-    row = waiting.rows[waiting.size[0]]
+    row = waiting.rows[waiting.num[0]]
     row[0], row[1], row[2], row[3] = one.tile
     row[4], row[5], row[6] = one.n, one.m, one.kind
     row[7], row[8], row[9] = one.allotment, one.bound, one.coarser_error
-    waiting.size[0] += 1
+    waiting.num[0] += 1
 
 
 @register_jitable
@@ -77,7 +77,7 @@ def push_halves(waiting: WaitingTiles, one: OpenTile, symmetric: bool) -> None:
 @register_jitable
 def pop_strongest(waiting: WaitingTiles) -> OpenTile:
     """Take out the tile of the largest estimated field."""
-    last = waiting.size[0] - 1
+    last = waiting.num[0] - 1
     best = last
     for i in range(last):
         if waiting.rows[i, 8] > waiting.rows[best, 8]:
@@ -89,5 +89,5 @@ def pop_strongest(waiting: WaitingTiles) -> OpenTile:
     )  # fmt: skip
     for i in range(row.size):  # a slice assigned takes more than a second to compile
         row[i] = waiting.rows[last, i]
-    waiting.size[0] = last
+    waiting.num[0] = last
     return strongest
