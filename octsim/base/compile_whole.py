@@ -10,7 +10,6 @@ names, `FITS` is false and all is compiled as numba does: to the same numbers, i
 """
 
 import gc
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import local
@@ -18,9 +17,7 @@ from typing import Any
 
 import llvmlite.binding
 from numba.core import codegen
-from numba.core.event import Listener, install_listener
-
-from octsim.base.compile_time import count
+from numba.core.event import Listener, register
 
 _library: Any = codegen.CPUCodeLibrary
 _OPTIMISE, _MAKE_CODE, _TO_LINK = (
@@ -30,27 +27,43 @@ FITS = all(hasattr(_library, name) for name in (_OPTIMISE, _MAKE_CODE, _TO_LINK)
 _ENVIRONMENT = "NumbaEnv"  # of global variables that numba looks up in each function's code
 _PARTS_BETWEEN = 100
 """Functions between looks for garbage; Python's own looks take a seventh of all."""
-_compiling = local()
+
+
+class _Compiling(local):
+    """What a thread is compiling."""
+
+    within = False
+    """Whether it is within `as_a_whole`."""
+    depth = 0
+    """Functions, each for the one before."""
+    parts = 0
+    """Functions that are done."""
+    parts_first = False
+
+
+_compiling = _Compiling()
 
 
 class _Depth(Listener):
-    """Counts how many functions are being compiled, each for the one before."""
-
-    def __init__(self) -> None:
-        self.parts = 0
+    """Counts what a thread compiles. There is one, as each is told of all that is compiled."""
 
     def on_start(self, _event: Any) -> None:
-        _compiling.depth += 1
+        if _compiling.within:
+            _compiling.depth += 1
 
     def on_end(self, _event: Any) -> None:
-        _compiling.depth -= 1
-        self.parts += 1
-        if self.parts % _PARTS_BETWEEN == 0:
-            gc.collect()
+        if _compiling.within:
+            _compiling.depth -= 1
+            _compiling.parts += 1
+            if _compiling.parts % _PARTS_BETWEEN == 0:
+                gc.collect()
+
+
+register("numba:compile", _Depth())  # type: ignore[no-untyped-call]
 
 
 def _is_part() -> bool:
-    return getattr(_compiling, "depth", 0) > 1
+    return _compiling.depth > 1
 
 
 def _waits() -> bool:
@@ -96,22 +109,14 @@ def as_a_whole(parts_first: bool) -> Iterator[None]:
         Whether parts are optimised by themselves too, before the whole is. Some loops are computed
         in lanes only then.
     """
-    around, around_first = (
-        getattr(_compiling, "depth", 0),
-        getattr(_compiling, "parts_first", False),
-    )
-    _compiling.depth, _compiling.parts_first = 0, parts_first
+    here = _compiling
+    around = here.within, here.depth, here.parts_first
+    here.within, here.depth, here.parts_first = True, 0, parts_first
     collects = gc.isenabled()
     gc.disable()
     try:
-        if around:  # a whole within another has its own count
-            yield
-        else:
-            began = time.monotonic()
-            with install_listener("numba:compile", _Depth()):
-                yield
-            count(time.monotonic() - began)
+        yield
     finally:
         if collects:
             gc.enable()
-        _compiling.depth, _compiling.parts_first = around, around_first
+        here.within, here.depth, here.parts_first = around

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import llvmlite.binding
 import numba
 
+from octsim.base.compile_time import counted
 from octsim.base.compile_whole import as_a_whole
 from octsim.base.kept_code import KeptCode
 from octsim.base.provenance import PACKAGE, source_digest
@@ -76,7 +77,7 @@ def _whole(
 
     def whole(sig: Any) -> Any:
         try:
-            with as_a_whole(parts_first):
+            with counted(), as_a_whole(parts_first):
                 return compile_(sig)
         finally:
             kept.done()

@@ -14,11 +14,16 @@ from octsim.base import code_folder
 from octsim.base.code_folder import can_write, folder_for, nowhere, places, remove_unused
 
 KERNEL = """
+from numba.extending import register_jitable
 from octsim.base.compiled import compiled
+
+@register_jitable
+def half(x):
+    return x / 2
 
 @compiled()
 def double(x):
-    return 2 * x
+    return half(4 * x)
 """
 WORK = "import kernel; print(kernel.double(21.0), sum(kernel.double.stats.cache_hits.values()))"
 
@@ -117,6 +122,15 @@ def test_two_processes_compile_once(tmp_path: Path) -> None:
     assert sum("octsim: compiling" in err for _, err in found) == 1
 
 
+def test_threads_that_wait_for_a_compilation_do_not_disturb_it(tmp_path: Path) -> None:
+    threads = (
+        "import kernel\n"
+        "from concurrent.futures import ThreadPoolExecutor\n"
+        "print(set(ThreadPoolExecutor(8).map(kernel.double, 64 * [21.0])))\n"
+    )
+    assert said(run(tmp_path, tmp_path / "kept", threads))[0] == "{42.0}"
+
+
 def test_a_killed_process_holds_up_nobody(tmp_path: Path) -> None:
     kept = tmp_path / "kept"
     stop = (
@@ -202,7 +216,7 @@ def test_an_update_never_runs_the_old_code(tmp_path: Path) -> None:
     code = (
         "import pathlib, os\n"
         f"p = pathlib.Path({str(kernel)!r})\n"
-        "p.write_text(p.read_text().replace('2 * x', '3 * x'))\n"
+        "p.write_text(p.read_text().replace('4 * x', '6 * x'))\n"
         f"os.utime(p, ns=({before.st_atime_ns}, {before.st_mtime_ns}))\n"
     )
     assert said(run(tmp_path, kept, code + WORK))[0] == "63.0 0"
