@@ -1,79 +1,72 @@
 """Processor time that compiling takes from nothing, in two checkouts of octsim, in one run.
 
-    .venv/bin/python benchmarks/compile_time.py /some/older/checkout [cores]
+    .venv/bin/python benchmarks/compile_time.py /some/older/checkout [rounds]
 
-Small runs of each scheme are made in a copy of each checkout: first without compiled code, then
-with what that has left. What the second needs less is compiling, wherever a run does it; nothing
-is compiled when octsim is installed.
+A process finds the light, spectra and paths of a few points by each scheme, which compiles all that
+a run needs, in a copy of each checkout: first without compiled code, then with what that has left.
+What it needs less then is compiling. Nothing is compiled when octsim is installed.
 """
 
 import os
 import resource
 import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
-
-import yaml
 
 from octsim.base.provenance import PACKAGE
 
-SMALL: dict[str, Any] = {
-    "tracing": {"rays": 200},
-    "spectrum": {"samples": 100},
-    "focus_scan": {"focus": {"num": 5}},
-    "focus_law": {"diameters": {"num": 3}, "fraction": {"num": 9}},
-    "sweep": {"diameters": {"num": 9}, "focus": {"slope": 0.58, "intercept": "69 nm"}},
-}
-RUNS = {"vogel": SMALL, "paths": SMALL | {"tracing": {"preset": "draft"}}}
-PARTS = ("octsim", "config", "profiles", "workflow")
+WORK = """
+import octsim
+for tracing in {"rays": 200}, {"preset": "draft"}:
+    config = octsim.load_config({
+        "tracing": tracing,
+        "spectrum": {"samples": 100},
+        "sweep": {
+            "diameters": {"start": "1 um", "stop": "1.1 um", "num": 3},
+            "focus": {"slope": 0.58, "intercept": "69 nm"},
+        },
+    })
+    found = octsim.detections(config)
+    octsim.spectra(config, found), octsim.light_paths(config, found)
+"""
 
 
-def copied(checkout: Path, folder: Path) -> Path:
-    """Copy what runs of a checkout, without what it has compiled."""
-    for part in PARTS:
-        shutil.copytree(
-            checkout / part, folder / part, ignore=shutil.ignore_patterns("__pycache__")
-        )
-    shutil.copy(checkout / "Snakefile", folder)
-    return folder
-
-
-def seconds(checkout: Path, folder: Path, cores: str) -> float:
-    """Make the runs in a folder; return the processor time of all processes, s."""
-    folder.mkdir()
+def seconds(checkout: Path) -> float:
+    """Do the work in a checkout, with the libraries of this one's; return processor time, s."""
+    environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    for name, config in RUNS.items():
-        (folder / f"{name}.yaml").write_text(yaml.safe_dump({"run": name, **config}))
-        command = [
-            sys.executable, "-m", "snakemake", "--snakefile", str(checkout / "Snakefile"),
-            "--workflow-profile", str(checkout / "profiles" / "default"), "--cores", cores,
-            "--configfile", f"{name}.yaml",
-        ]  # fmt: skip
-        environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
-        done = subprocess.run(
-            command, cwd=folder, env=environment | {"PYTHONPATH": str(checkout)},
-            capture_output=True, text=True, check=False,
-        )  # fmt: skip
-        if done.returncode != 0:
-            sys.exit(f"{checkout}: the run {name} failed\n{done.stdout}{done.stderr}")
+    subprocess.run(
+        [sys.executable, "-c", WORK], env=environment | {"PYTHONPATH": str(checkout)},
+        cwd=checkout, check=True,
+    )  # fmt: skip
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def main(older: Path, cores: str = "2") -> None:
-    """Print what compiling takes in both."""
-    compiling = {}
-    with tempfile.TemporaryDirectory() as temporary:
-        for name, checkout in (("older", older), ("this", PACKAGE.parent)):
-            copy = copied(checkout, Path(temporary) / name)
-            first, again = (seconds(copy, copy / run, cores) for run in ("first", "again"))
-            compiling[name] = first - again
-            print(f"{name}: {first:.1f} s of processor time, {again:.1f} s when compiled")
-    print(f"compiling: {compiling['this'] / compiling['older']:.3f} of the older checkout's time")
+def compiling(checkout: Path) -> float:
+    """Return the processor time that compiling takes in a copy of a checkout, s."""
+    with tempfile.TemporaryDirectory() as folder:
+        package = PACKAGE.name
+        shutil.copytree(
+            checkout / package, Path(folder) / package,
+            ignore=shutil.ignore_patterns("__pycache__"),
+        )  # fmt: skip
+        seconds_first, seconds_again = (seconds(Path(folder)) for _ in range(2))
+    print(f"{checkout}: {seconds_first:.1f} s, {seconds_again:.1f} s when all is compiled")
+    return seconds_first - seconds_again
+
+
+def main(older: Path, rounds: int = 1) -> None:
+    """Print how much of the older checkout's time compiling takes in this one."""
+    ratios = []
+    for _ in range(rounds):
+        before = compiling(older)
+        ratios.append(compiling(PACKAGE.parent) / before)
+    print(f"compiling takes {statistics.median(ratios):.3f} of what it took")
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]).resolve(), *sys.argv[2:])
+    main(Path(sys.argv[1]).resolve(), *map(int, sys.argv[2:]))

@@ -98,6 +98,9 @@ def follow(
     """
     now, met, beyond = room.blocks[0], room.blocks[1], room.blocks[2]
     launch(beam, 0, n, focus, now, _launch)
+    # slices are arrays of the kind that a tree works in, so that what both call is compiled once
+    distance, cos_i, cos_met = room.distance[:], room.cos_i[:], room.cos_met[:]
+    cos_t, met_face, chosen = room.cos_t[:], room.face[:], room.chosen[:]
     count, departure, segments = n, 0, 0
     for i in range(n):
         bundle.followed[i] = False
@@ -105,18 +108,18 @@ def follow(
         segments += count
         f = face[m]
         meet_nearest(
-            faces, departure, now, count, room.face, room.distance, room.cos_i, room.cos_met,
-            room.cos_t,
+            faces, departure, now, count, met_face, distance, cos_i, cos_met,
+            cos_t,
         )  # fmt: skip
-        kept = choose(room.face, f, count, room.chosen)
+        kept = choose(met_face, f, count, chosen)
         advance_chosen(
-            faces, f, now, count, room.chosen, kept, room.distance, room.cos_i, met, room.cos_met,
+            faces, f, now, count, chosen, kept, distance, cos_i, met, cos_met,
             _move,
         )  # fmt: skip
-        total = split(faces, f, met, kept, room.cos_met, room.cos_t, beyond, _split)
+        total = split(faces, f, met, kept, cos_met, cos_t, beyond, _split)
         if through[m] and total > 0:
             for i in range(kept):
-                room.wanted[i] = room.cos_t[i] >= 0
+                room.wanted[i] = cos_t[i] >= 0
             kept = keep(beyond, kept, room.wanted, _CARRIED)
         if through[m]:
             now, beyond = beyond, now
