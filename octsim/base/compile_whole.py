@@ -17,13 +17,17 @@ from typing import Any
 
 import llvmlite.binding
 from numba.core import codegen
+from numba.core.cpu import CPUContext
 from numba.core.event import Listener, register
 
 _library: Any = codegen.CPUCodeLibrary
 _OPTIMISE, _MAKE_CODE, _TO_LINK = (
     "_optimize_final_module", "_finalize_final_module", "_get_module_for_linking"
 )  # fmt: skip
-FITS = all(hasattr(_library, name) for name in (_OPTIMISE, _MAKE_CODE, _TO_LINK))
+_WRAP = "create_cfunc_wrapper"
+FITS = hasattr(CPUContext, _WRAP) and all(
+    hasattr(_library, name) for name in (_OPTIMISE, _MAKE_CODE, _TO_LINK)
+)
 _ENVIRONMENT = "NumbaEnv"  # of global variables that numba looks up in each function's code
 _PARTS_BETWEEN = 100
 """Functions between looks for garbage; Python's own looks take a seventh of all."""
@@ -38,7 +42,8 @@ class _Compiling(local):
     """Functions, each for the one before."""
     parts = 0
     """Functions that are done."""
-    parts_first = False
+    apart: frozenset[str] = frozenset()
+    """Names of functions that are optimised by themselves too."""
 
 
 _compiling = _Compiling()
@@ -66,16 +71,17 @@ def _is_part() -> bool:
     return _compiling.depth > 1
 
 
-def _waits() -> bool:
+def _waits(name: str) -> bool:
     """Return whether what is being compiled is optimised with the whole alone."""
-    return _is_part() and not _compiling.parts_first
+    return _is_part() and name not in _compiling.apart
 
 
 if FITS:
     _optimise, _make_code = getattr(_library, _OPTIMISE), getattr(_library, _MAKE_CODE)
+    _wrap = getattr(CPUContext, _WRAP)
 
     def _optimise_the_whole(self: Any) -> None:
-        if not _waits():
+        if not _waits(self.name):
             _optimise(self)
 
     def _make_code_of_the_whole(self: Any) -> None:
@@ -86,6 +92,11 @@ if FITS:
             self._final_module = llvmlite.binding.parse_assembly(_variables_of(self))
         _make_code(self)
 
+    def _wrap_the_whole(self: Any, *arguments: Any, **named: Any) -> None:
+        if not _is_part():  # nothing but compiled code calls a part
+            _wrap(self, *arguments, **named)
+
+    setattr(CPUContext, _WRAP, _wrap_the_whole)
     setattr(_library, _OPTIMISE, _optimise_the_whole)
     setattr(_library, _MAKE_CODE, _make_code_of_the_whole)
 
@@ -100,18 +111,18 @@ def _variables_of(library: Any) -> str:
 
 
 @contextmanager
-def as_a_whole(parts_first: bool) -> Iterator[None]:
+def as_a_whole(apart: frozenset[str]) -> Iterator[None]:
     """Compile what is compiled within, each for itself, as a whole with all that it calls.
 
     Parameters
     ----------
-    parts_first : bool
-        Whether parts are optimised by themselves too, before the whole is. Some loops are computed
-        in lanes only then.
+    apart : frozenset of str
+        Names of functions that are optimised by themselves too, before the whole is: some loops are
+        computed in lanes only then.
     """
     here = _compiling
-    around = here.within, here.depth, here.parts_first
-    here.within, here.depth, here.parts_first = True, 0, parts_first
+    around = here.within, here.depth, here.apart
+    here.within, here.depth, here.apart = True, 0, apart
     collects = gc.isenabled()
     gc.disable()
     try:
@@ -119,4 +130,4 @@ def as_a_whole(parts_first: bool) -> Iterator[None]:
     finally:
         if collects:
             gc.enable()
-        here.within, here.depth, here.parts_first = around
+        here.within, here.depth, here.apart = around

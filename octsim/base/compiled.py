@@ -43,7 +43,7 @@ def _digest(function: Callable[..., Any]) -> str:
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:12]
 
 
-def compiled(*, parts_first: bool = False, **options: Any) -> Callable[[Function], Function]:
+def compiled(*apart: Callable[..., Any], **options: Any) -> Callable[[Function], Function]:
     """Compile a function when it is first called, without the interpreter's lock.
 
     numba's own cache looks at the time of the function's file alone and would go on using old
@@ -53,17 +53,21 @@ def compiled(*, parts_first: bool = False, **options: Any) -> Callable[[Function
 
     Parameters
     ----------
-    parts_first : bool
-        Whether what it calls is optimised apart too, before.
+    *apart : callable
+        Functions that it calls and that are optimised by themselves too, before: some loops are
+        computed in lanes only then.
     **options
         Those of `numba.njit`.
     """
 
     def compile_(function: Function) -> Function:
-        dispatcher: Any = numba.njit(nogil=True, error_model="numpy", **options)(function)
+        chosen: Any = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True, **options}
+        dispatcher: Any = numba.njit(**chosen)(function)
         if not isinstance(dispatcher, FunctionType):  # which it is with NUMBA_DISABLE_JIT
             dispatcher._cache = kept = KeptCode(function, _digest(function))
-            dispatcher.compile = _whole(dispatcher.compile, kept, parts_first)
+            dispatcher.compile = _whole(
+                dispatcher.compile, kept, frozenset(part.__name__ for part in apart)
+            )
         made: Function = dispatcher
         return made
 
@@ -71,13 +75,13 @@ def compiled(*, parts_first: bool = False, **options: Any) -> Callable[[Function
 
 
 def _whole(
-    compile_: Callable[[Any], Any], kept: KeptCode, parts_first: bool
+    compile_: Callable[[Any], Any], kept: KeptCode, apart: frozenset[str]
 ) -> Callable[[Any], Any]:
     """Return a dispatcher's method `compile`, for the whole of what it compiles."""
 
     def whole(sig: Any) -> Any:
         try:
-            with counted(), as_a_whole(parts_first):
+            with counted(), as_a_whole(apart):
                 return compile_(sig)
         finally:
             kept.done()

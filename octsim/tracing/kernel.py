@@ -135,7 +135,7 @@ def make_tree(carry: Carry) -> Callable[..., tuple[Any, ...]]:
     carried, launch_carried, move, split_carried, strength = carry
     size = FIRST_CARRIED + carried
 
-    @compiled(parts_first=True)  # which makes lanes of the loops over a block
+    @compiled(advance_chosen, split)
     def trace_tree(
         faces: Faces,
         beam: Beam,
