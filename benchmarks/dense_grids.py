@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.base.compiled import compiled
+from octsim.base.records import room
 from octsim.optics.beam import Beam, aim
 from octsim.optics.detector import Acceptance, Detector, falloff
 from octsim.optics.scene import Scene
 from octsim.tracing.faces import Faces, faces_at
-from octsim.tracing.follow import follow, room_for_bundle, room_for_following
+from octsim.tracing.follow import FOLLOW_ROOM, Bundle, FollowRoom, bundle_of, follow
 from octsim.tracing.kernel import AT_VX, AT_VY, AT_X, AT_Y, FIRST_CARRIED, trace_amplitudes
 from octsim.tracing.lanes import LANES
 from octsim.tracing.light_paths import LONGEST, steps_of
@@ -69,12 +70,11 @@ def _within(margin: float, across: float, along: float) -> float:
 def _sum_cells(
     faces: Faces, detector: Detector, focus: float, code: int, columns: NDArray[np.int64],
     rows: NDArray[np.int64], slopes: Array, finer: int, first: float, step: float, real: Array,
-    imaginary: Array,
+    imaginary: Array, bundle: Bundle, rays: FollowRoom,
 ) -> int:  # fmt: skip
     """Add a path's rays from a grid of midpoints over some cells; return how many are detected."""
     face, through = np.empty(LONGEST, np.int64), np.empty(LONGEST, np.bool_)
     meetings = steps_of(faces, code, face, through)
-    room, bundle = room_for_following(), room_for_bundle()
     beam = Beam(np.empty(LANES), np.empty(LANES), np.empty(LANES), np.ones(LANES), np.arange(LANES))
     areas, across, along = np.empty(LANES), np.empty(LANES), np.empty(LANES)
     width, height = 1 / (COLUMNS * finer), 1 / (ROWS * finer)
@@ -94,7 +94,7 @@ def _sum_cells(
         count += 1
         if count < LANES and number + 1 < total:
             continue
-        follow(faces, face, through, meetings, beam, count, detector, focus, room, bundle)
+        follow(faces, face, through, meetings, beam, count, detector, focus, rays, bundle)
         for i in range(count):
             if not bundle.followed[i]:
                 continue
@@ -146,9 +146,7 @@ def _may_hold(known: NDArray[np.bool_], values: Array, limit: Array) -> NDArray[
     return some & (held | ~every)
 
 
-def parts_of(
-    faces: Faces, detector: Detector, focus: float, max_intersections: int
-) -> list[_Part]:
+def parts_of(faces: Faces, detector: Detector, focus: float, max_intersections: int) -> list[_Part]:
     """Return where on the aperture each light path may be detected."""
     xi, y = np.linspace(0, 1, COLUMNS + 1), np.sin(np.linspace(0, np.pi / 2, ROWS + 1))
     xi[0], y[0], y[-1] = 1e-9, 1e-9, 1 - 1e-9
@@ -224,7 +222,7 @@ def dense_field(
         real, imaginary = np.zeros(wavenumber.size), np.zeros(wavenumber.size)
         detected = _sum_cells(
             faces, detector, focus, part.code, part.columns, part.rows, part.slopes, finer, first,
-            step, real, imaginary,
+            step, real, imaginary, room(bundle_of(LANES)), room(FOLLOW_ROOM),
         )  # fmt: skip
         return real + 1j * imaginary, detected
 

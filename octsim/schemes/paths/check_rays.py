@@ -7,12 +7,12 @@ and no polynomial is kept that puts one elsewhere.
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from octsim.base.records import layout
 from octsim.optics.detector import falloff
 from octsim.schemes.paths.aperture_tiles import Tile, across, fraction
 from octsim.schemes.paths.chebyshev import polynomials
@@ -26,7 +26,7 @@ _NEAR = 1e-8  # to an edge, of the tile's width
 _EVENED_OUT = 0.1  # error of an integral, over the largest of its integrand
 
 
-class CheckRays(NamedTuple):
+class CheckRays:
     """Rays of one path, and those of the survey that do not take it."""
 
     s: NDArray[np.float64]
@@ -40,13 +40,8 @@ class CheckRays(NamedTuple):
     """How many are, (1,)."""
 
 
-@register_jitable
-def room_for_checks() -> CheckRays:
-    """Make the room that a path's check rays are kept in."""
-    return CheckRays(
-        np.empty(CHECKS), np.empty(CHECKS), np.empty(CHECKS), np.empty(CHECKS),
-        np.zeros(1, np.int64),
-    )  # fmt: skip
+_each = (CHECKS,)
+CHECK_RAYS = layout(CheckRays, s=_each, v=_each, weight=_each, amplitude=_each, detected=(1,))
 
 
 @register_jitable
@@ -75,9 +70,9 @@ def weight_of(x: float, y: float, cos: float, inside: float, radius: float) -> f
 
 @register_jitable(forceinline=True)
 def _is_in(checks: CheckRays, i: int, tile: Tile) -> bool:
-    return (
-        tile.s_min <= checks.s[i] <= tile.s_max and tile.v_min <= checks.v[i] <= tile.v_max
-    )
+    s: float = checks.s[i]
+    v: float = checks.v[i]
+    return tile.s_min <= s <= tile.s_max and tile.v_min <= v <= tile.v_max
 
 
 @register_jitable

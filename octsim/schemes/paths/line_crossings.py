@@ -3,9 +3,9 @@
 On a tile the line along which a ray returns is a polynomial; where light is detected, and with what
 falloff, follows from that without tracing another ray. How far inside the detector's image and the
 objective's rim light returns are then polynomials along a line too, whose roots are all found
-(`polynomial_roots`): between two of them light is detected everywhere or nowhere. A returning line is known by its moments
-about the focus, (X cos θ, Y cos θ) for one that crosses the focal plane at (X, Y) at an angle θ:
-they stay finite where θ comes near a right angle.
+(`polynomial_roots`): between two of them light is detected everywhere or nowhere. A returning line
+is known by its moments about the focus, (X cos θ, Y cos θ) for one that crosses the focal plane at
+(X, Y) at an angle θ: they stay finite where θ comes near a right angle.
 """
 
 import math
@@ -15,15 +15,17 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from octsim.base.records import layout
 from octsim.optics.detector import falloff
 from octsim.schemes.paths.aperture_tiles import Tile
 from octsim.schemes.paths.chebyshev import HIGHEST, polynomials
 from octsim.schemes.paths.polynomial_roots import (
+    HALVES,
     MOST_COEFFICIENTS,
     BernsteinTables,
     add_square,
     append_roots,
-    room_for_halves,
+    sort,
     to_bernstein,
     unscale,
     value_at,
@@ -34,7 +36,7 @@ LESS_S, LESS_V = 2, 1
 """Orders that a rougher rule has less along s and v. Errors along s can alternate in size."""
 
 
-class Map(NamedTuple):
+class Map:
     """Where the rays of a tile return to, as Chebyshev coefficients in (s, v)."""
 
     x: NDArray[np.float64]
@@ -47,7 +49,7 @@ class Map(NamedTuple):
     """`octsim.optics.detector.rim_margin`."""
 
 
-class TileLine(NamedTuple):
+class TileLine:
     """A `Map` at one ξ: coefficients in v, and room to work in."""
 
     x: NDArray[np.float64]
@@ -76,16 +78,14 @@ class TileLine(NamedTuple):
     rough: NDArray[np.float64]
 
 
-@register_jitable
-def room_for_line() -> TileLine:
-    """Make the room that `moments` works in."""
-    size, most = HIGHEST, MOST_COEFFICIENTS
-    return TileLine(
-        np.empty(size), np.empty(size), np.empty(size), np.empty(size), np.empty(size),
-        np.empty(size), np.empty(size), np.empty(size), np.empty(MOST_CROSSINGS), np.empty(size),
-        np.empty(most), np.empty(most), np.empty(MOST_CROSSINGS), room_for_halves(),
-        np.empty(size), np.empty(size),
-    )  # fmt: skip
+_square, _each, _both = (HIGHEST, HIGHEST), (HIGHEST,), (MOST_COEFFICIENTS,)
+_crossings = (MOST_CROSSINGS,)
+MAP = layout(Map, x=_square, y=_square, cos=_square, inside=_square)
+TILE_LINE = layout(
+    TileLine, x=_each, y=_each, cos=_each, inside=_each, rough_x=_each, rough_y=_each, t=_each,
+    u=_each, cuts=_crossings, scaled=_each, at_detector=_both, at_rim=_both, roots=_crossings,
+    halves=HALVES, exact=_each, rough=_each,
+)  # fmt: skip
 
 
 class Cut(NamedTuple):
@@ -164,7 +164,7 @@ def _margin_at_detector(
 @register_jitable(forceinline=True)
 def _reaches_rim(line: TileLine, n: int) -> bool:
     """Return whether not all of a line is within the objective's rim."""
-    least = line.inside[0]
+    least: float = line.inside[0]
     for b in range(1, n):
         least -= abs(line.inside[b])
     return least <= 0
@@ -197,7 +197,7 @@ def cross(cut: Cut, xi: float, line: TileLine) -> int:
     if rim:
         _set_rim(cut, line, m)
         num = _roots(cut, line, m, line.at_rim, num)
-        line.roots[:num].sort()
+        sort(line.roots, num)
     found, begin = 0, 0.0
     for i in range(num + 1):
         end = line.roots[i] if i < num else 1.0

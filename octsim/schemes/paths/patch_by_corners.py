@@ -27,7 +27,8 @@ def _difference(
 ) -> float:  # fmt: skip
     """Return how far a quantity at a node is from a value; −1 if the node is not known."""
     if 0 <= p < n and 0 <= q < m and followed[p * m + q]:
-        return abs(values[p * m + q] - here)
+        there: float = values[p * m + q]
+        return abs(there - here)
     return -1.0
 
 
@@ -35,7 +36,7 @@ def _difference(
 def _variation(
     values: NDArray[np.float64], followed: NDArray[np.bool_], n: int, m: int, along_v: bool
 ) -> float:
-    """Return the largest difference of neighbours of a tile along one axis; −1 if there are none."""
+    """Return the largest difference of a tile's neighbours along one axis; −1 without any."""
     most = -1.0
     for p in range(n):
         for q in range(m):
@@ -188,8 +189,8 @@ def reached(
 
     Nothing is fitted; cells between nodes are left out if their corners are well beside the
     detector or beyond the objective's rim, or if no corner takes the path. Towards a corner that is
-    not known a quantity may go on by `extrapolation` times what it varies between known ones. A cell
-    where a check ray is detected is not left out.
+    not known a quantity may go on by `extrapolation` times what it varies between known ones.
+    A cell where a check ray is detected is not left out.
 
     Returns
     -------

@@ -1,13 +1,12 @@
 """Integrals over the part of a tile of the aperture whose light is detected."""
 
 import math
-from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from octsim.base.records import layout
 from octsim.schemes.paths.aperture_tiles import across
 from octsim.schemes.paths.chebyshev import HIGHEST
 from octsim.schemes.paths.line_crossings import (
@@ -19,12 +18,13 @@ from octsim.schemes.paths.line_crossings import (
     crossing_kind,
     falloffs,
 )
+from octsim.schemes.paths.polynomial_roots import sort
 
 _BETWEEN = 4  # parts between places where that is known to change
 _PIECES = 64  # of a tile, at most
 
 
-class Rules(NamedTuple):
+class Rules:
     """Quadrature rules: nodes and weights on 0 … 1."""
 
     gauss: NDArray[np.float64]
@@ -37,19 +37,23 @@ class Rules(NamedTuple):
     """Gauss's weights of those, 0 for the other nodes, (15,)."""
 
 
-@cache
-def rules() -> Rules:
-    """Return the quadrature rules."""
-    most = HIGHEST + 6
-    nodes, weights = np.zeros((most, most)), np.zeros((most, most))
-    for q in range(1, most):
+_MOST = HIGHEST + 6  # nodes of a rule, and one more
+RULES = layout(
+    Rules, gauss=(_MOST, _MOST), gauss_weight=(_MOST, _MOST), kronrod=(15,), kronrod_weight=(15,),
+    embedded_weight=(15,),
+)  # fmt: skip
+
+
+def fill_rules(rules: Rules) -> None:
+    """Fill in the quadrature rules."""
+    rules.gauss[:], rules.gauss_weight[:], rules.embedded_weight[:] = 0.0, 0.0, 0.0
+    for q in range(1, _MOST):
         x, w = np.polynomial.legendre.leggauss(q)
-        nodes[q, :q], weights[q, :q] = (x + 1) / 2, w / 2
+        rules.gauss[q, :q], rules.gauss_weight[q, :q] = (x + 1) / 2, w / 2
     seven, seven_weight = np.polynomial.legendre.leggauss(7)
     fifteen, fifteen_weight = _kronrod(seven)
-    embedded = np.zeros(15)
-    embedded[1::2] = seven_weight / 2
-    return Rules(nodes, weights, (fifteen + 1) / 2, fifteen_weight / 2, embedded)
+    rules.kronrod[:], rules.kronrod_weight[:] = (fifteen + 1) / 2, fifteen_weight / 2
+    rules.embedded_weight[1::2] = seven_weight / 2
 
 
 def _kronrod(gauss: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -84,7 +88,7 @@ def _breaks(cut: Cut, line: TileLine, breaks: NDArray[np.float64]) -> int:
         for root in line.roots[: cross_edge(cut, v, line)]:
             breaks[num] = across(tile.s_min + (tile.s_max - tile.s_min) * root, cut.symmetric)
             num += 1
-    breaks[:num] = np.sort(breaks[:num])
+    sort(breaks, num)
     # between those, a line may still begin or cease to cross the patch within the tile
     known = num
     for i in range(1, known):
@@ -105,7 +109,7 @@ def _breaks(cut: Cut, line: TileLine, breaks: NDArray[np.float64]) -> int:
                 breaks[num] = 0.5 * (inner + outer)
                 num += 1
             low, before = high, after
-    breaks[:num] = np.sort(breaks[:num])
+    sort(breaks, num)
     return num
 
 

@@ -8,14 +8,13 @@ Coefficients are *scaled* where polynomials are multiplied: by binomials, so tha
 are a convolution.
 """
 
-from functools import cache
 from math import comb
-from typing import NamedTuple
 
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from octsim.base.records import layout
 from octsim.schemes.paths.chebyshev import HIGHEST
 
 MOST_COEFFICIENTS = 2 * HIGHEST
@@ -23,10 +22,12 @@ _DEPTH = 40  # halves of halves; what is left there is one place
 _ROUNDED = 1e-13  # of the largest coefficient: below that its parts' are rounding
 _STEPS = 60
 _CLOSE = 1e-10  # of the interval
+HALVES = _DEPTH + 2, MOST_COEFFICIENTS
+"""Shape of the room that `append_roots` works in."""
 
 
-class BernsteinTables(NamedTuple):
-    """What turns polynomials into Bernstein's form, from `bernstein_tables`."""
+class BernsteinTables:
+    """What turns polynomials into Bernstein's form; `fill_bernstein` fills it in."""
 
     from_chebyshev: NDArray[np.float64]
     """``coefficients @ from_chebyshev[n, :n, :n]`` are n scaled ones.
@@ -37,23 +38,27 @@ class BernsteinTables(NamedTuple):
     """``binomials[d, j]``, by which those of degree d are scaled, (2 HIGHEST, 2 HIGHEST)."""
 
 
-@cache
-def bernstein_tables() -> BernsteinTables:
-    r"""Return what turns Chebyshev's coefficients into Bernstein's, and the binomials.
+BERNSTEIN_TABLES = layout(
+    BernsteinTables, from_chebyshev=(HIGHEST + 1, HIGHEST, HIGHEST),
+    binomials=(MOST_COEFFICIENTS, MOST_COEFFICIENTS),
+)  # fmt: skip
+
+
+def fill_bernstein(tables: BernsteinTables) -> None:
+    r"""Fill in what turns Chebyshev's coefficients into Bernstein's, and the binomials.
 
     .. math:: T_m(2c - 1) = \sum_j (-1)^{m-j} \binom{2m}{2j} c^j (1-c)^{m-j}
 
     times :math:`(c + (1 - c))^{n-1-m}` to be of degree n − 1.
     """
     most = MOST_COEFFICIENTS
-    binomials = np.array([[float(comb(d, j)) for j in range(most)] for d in range(most)])
-    tables = np.zeros((HIGHEST + 1, HIGHEST, HIGHEST))
+    tables.binomials[:] = [[comb(d, j) for j in range(most)] for d in range(most)]
+    tables.from_chebyshev[:] = 0.0
     for n in range(1, HIGHEST + 1):
         for m in range(n):
-            signed = [(-1) ** (m - j) * comb(2 * m, 2 * j) for j in range(m + 1)]
-            raised = [comb(n - 1 - m, j) for j in range(n - m)]
-            tables[n, m, :n] = np.convolve(np.array(signed, float), np.array(raised, float))
-    return BernsteinTables(tables, binomials)
+            signed = [(-1.0) ** (m - j) * comb(2 * m, 2 * j) for j in range(m + 1)]
+            raised = [float(comb(n - 1 - m, j)) for j in range(n - m)]
+            tables.from_chebyshev[n, m, :n] = np.convolve(signed, raised)
 
 
 @register_jitable
@@ -96,7 +101,8 @@ def value_at(
     coefficients: NDArray[np.float64], n: int, binomials: NDArray[np.float64], c: float
 ) -> float:
     """Return the value of a polynomial at c, from its n Bernstein coefficients."""
-    rest, power, total = 1 - c, 1.0, coefficients[0]
+    rest, power = 1 - c, 1.0
+    total: float = coefficients[0]
     for j in range(1, n):
         power *= c
         total = total * rest + binomials[n - 1, j] * power * coefficients[j]
@@ -168,8 +174,8 @@ def append_roots(
         How many there are.
     binomials : ndarray
         From `bernstein_tables`.
-    room : ndarray, shape (_DEPTH + 2, MOST_COEFFICIENTS)
-        Room to work in, from `room_for_halves`.
+    room : ndarray, shape `HALVES`
+        Room to work in.
     roots : ndarray
         Where they are put; room for n − 1 more.
     count : int
@@ -212,6 +218,11 @@ def append_roots(
 
 
 @register_jitable
-def room_for_halves() -> NDArray[np.float64]:
-    """Make the room that `append_roots` works in."""
-    return np.empty((_DEPTH + 2, MOST_COEFFICIENTS))
+def sort(values: NDArray[np.float64], num: int) -> None:
+    """Sort the first few of some values; numpy's sort takes two seconds to compile."""
+    for i in range(1, num):
+        value, k = values[i], i
+        while k > 0 and values[k - 1] > value:
+            values[k] = values[k - 1]
+            k -= 1
+        values[k] = value

@@ -13,8 +13,8 @@ from numba.extending import register_jitable
 
 from octsim.schemes.paths.aperture_tiles import Tile, area, between, fraction
 from octsim.schemes.paths.chebyshev import FIT, HIGHEST, LOOK
-from octsim.schemes.paths.check_rays import field_seen, sees_beside, weight_error
-from octsim.schemes.paths.line_crossings import LESS_S, LESS_V, Cut
+from octsim.schemes.paths.check_rays import field_seen, sees_beside
+from octsim.schemes.paths.line_crossings import LESS_S, LESS_V
 from octsim.schemes.paths.patch_by_corners import Cells, corner, reached
 from octsim.schemes.paths.patch_by_fit import holding
 from octsim.schemes.paths.progress import PathGoal, Progress, left_out, spare
@@ -105,7 +105,8 @@ def _look(
         The corner next to the axes whose nodes all take the path; its n is 0 if there is none.
     """
     tile, n, m, kind, allotment, _, _ = work
-    along_s, along_v, radius = point.nodes_s[kind, n], point.nodes_v[kind, m], point.detector.radius
+    along_s, along_v = point.tables.nodes_s[kind, n], point.tables.nodes_v[kind, m]
+    radius = point.detector.radius
     p, q = corner(space.bundle.followed, n, m) if kind == LOOK else (0, 0)
     missing = 0.0
     # all of the tile, or what lies to the right of the corner and above it
@@ -141,7 +142,8 @@ def _look_closely(
     nothing of what their nodes tell is forgotten.
     """
     tile, n, m, kind, allotment, _, _ = work
-    along_s, along_v, radius = point.nodes_s[kind, n], point.nodes_v[kind, m], point.detector.radius
+    along_s, along_v = point.tables.nodes_s[kind, n], point.tables.nodes_v[kind, m]
+    radius = point.detector.radius
     step_s, step_v = (n - 1, m - 1) if covered else (_BLOCK, _BLOCK)
     orders, next_kind = (goal.orders, FIT) if covered else ((MIXED, MIXED), LOOK)
     missing = 0.0
@@ -215,13 +217,9 @@ def _fit(
     # the integral costs more than a look at the coefficients, which overestimates the error
     if end or error <= 30 * max(tolerance, relative * typical):
         close = 0.1 * max(tolerance, 0.1 * relative * field) / strongest
-        total = weigh(point, tile, n, m, close, space)
+        total, off = weigh(point, tile, n, m, close, space)
         size, error = sum_tile(point, n, m, space)
         error += (rim_s + rim_v) * total * strongest
-        cut = Cut(
-            space.returns, n, m, tile, point.symmetric, point.detector.radius, point.bernstein
-        )
-        off = weight_error(space.checks, cut, space.line)
         error += off * max(total * strongest, field if seen else 0.0)
         tolerance = relative * max(goal.scale, progress.size + size)
     if total > 0 and (error <= tolerance or end):
@@ -265,7 +263,7 @@ def settle(
         Both as they are then.
     """
     stride, symmetric = work.m, point.symmetric
-    end = progress.segments > goal.budget or space.waiting.size[0] + 5 > MOST_TILES
+    end = progress.segments > goal.budget or space.waiting.num[0] + 5 > MOST_TILES
     followed, strongest = followed_of(space, work.n * work.m)
     if followed == 0:
         seen = field_seen(space.checks, work.tile, symmetric)

@@ -1,5 +1,7 @@
 """A few rays over the aperture, through the whole tree: which light paths there are, and where."""
 
+from typing import Any
+
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
@@ -67,9 +69,18 @@ def by_path(codes: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int
 
 
 @register_jitable
+def in_order(values: NDArray[Any], order: NDArray[np.int64]) -> NDArray[Any]:
+    """Return some values in an order; to index by it takes numba longer to compile."""
+    chosen = np.empty(order.size, values.dtype)
+    for i in range(order.size):
+        chosen[i] = values[order[i]]
+    return chosen
+
+
+@register_jitable
 def survey_of(
-    point: Point, root: Tile, n: int, m: int, max_intersections: int, min_amplitude: float,
-    extrapolation: float, space: Workspace,
+    faces: Faces, point: Point, root: Tile, n: int, m: int, max_intersections: int,
+    min_amplitude: float, extrapolation: float, space: Workspace,
 ) -> tuple[Survey, float, int]:  # fmt: skip
     """Trace the whole tree from n x m nodes of a tile: paths, faint rays a node, segments.
 
@@ -87,7 +98,7 @@ def survey_of(
     )  # fmt: skip
     # all that returns: rays beside the detector tell where between them a patch is
     labels, numbers, segments, outcomes = trace_amplitudes(
-        point.faces, beam, point.detector, Acceptance(np.inf, np.inf), point.focus,
+        faces, beam, point.detector, Acceptance(np.inf, np.inf), point.focus,
         max_intersections, min_amplitude,
     )  # fmt: skip
     order, firsts = by_path(labels[1])
@@ -95,18 +106,18 @@ def survey_of(
     survey = Survey(
         root,
         (n, m),
-        labels[1][order][firsts[:paths]],
+        in_order(labels[1], order[firsts[:paths]]),
         firsts[:paths],
         firsts[1:],
         extrapolation,
         np.zeros(paths),
         np.zeros(paths),
-        labels[0][order],
-        numbers[FIRST_CARRIED][order],
-        numbers[AT_X][order],
-        numbers[AT_Y][order],
-        numbers[AT_VX][order],
-        numbers[AT_VY][order],
+        in_order(labels[0], order),
+        in_order(numbers[FIRST_CARRIED], order),
+        in_order(numbers[AT_X], order),
+        in_order(numbers[AT_Y], order),
+        in_order(numbers[AT_VX], order),
+        in_order(numbers[AT_VY], order),
         check_s,
         check_v,
     )
@@ -115,8 +126,8 @@ def survey_of(
         recall(survey, p, point, space)
         survey.strongest[p] = followed_of(space, count)[1]
         survey.bound[p], _ = reached(
-            space.bundle, n, m, point.nodes_s[LOOK, n], point.nodes_v[LOOK, m], root, every,
-            point.symmetric, point.detector.radius, extrapolation, space.checks,
+            space.bundle, n, m, point.tables.nodes_s[LOOK, n], point.tables.nodes_v[LOOK, m], root,
+            every, point.symmetric, point.detector.radius, extrapolation, space.checks,
         )  # fmt: skip
     return survey, outcomes[Outcome.FAINT] / count, segments
 
@@ -145,13 +156,13 @@ def curved(faces: Faces, code: int) -> bool:
 
 
 @register_jitable
-def closer(point: Point, survey: Survey) -> tuple[bool, Tile]:
+def closer(faces: Faces, point: Point, survey: Survey) -> tuple[bool, Tile]:
     """Return whether not all of a survey's columns met more than planes, and the part that did."""
     n, m = survey.orders
-    root, along_s = survey.root, point.nodes_s[LOOK, n]
+    root, along_s = survey.root, point.tables.nodes_s[LOOK, n]
     left, right = n, -1
     for p in range(survey.code.size):
-        if curved(point.faces, survey.code[p]):
+        if curved(faces, survey.code[p]):
             for i in range(survey.begin[p], survey.end[p]):
                 column = survey.ray[i] // m
                 if column >= n:
@@ -177,6 +188,7 @@ def part_of_faint(survey: Survey, amplitude: float) -> float:
 
 @register_jitable
 def survey_aperture(
+    faces: Faces,
     point: Point,
     orders: tuple[int, int],
     max_intersections: int,
@@ -197,16 +209,17 @@ def survey_aperture(
     n, m = orders
     root = Tile(0.0 if point.symmetric else -1.0, 1.0, 0.0, 1.0)
     wide, lost, segments = survey_of(
-        point, root, n, m, max_intersections, min_amplitude, USUALLY, space
+        faces, point, root, n, m, max_intersections, min_amplitude, USUALLY, space
     )
     close = wide
     for _ in range(CLOSER_LOOKS):
-        edge, tile = closer(point, close)
+        edge, tile = closer(faces, point, close)
         much = area(tile, point.symmetric) > 0.8 * area(close.root, point.symmetric)
         if not edge or (much and close.extrapolation == NEAR_AN_EDGE):
             break
         # past the cylinder's edge: near it the light's way changes fast
         close, lost, traced = survey_of(
+            faces,
             point,
             tile,
             min(COLUMNS, (MOST_RAYS - CHECKS) // m),
@@ -218,7 +231,9 @@ def survey_aperture(
         )
         segments += traced
     narrowed = close.extrapolation == NEAR_AN_EDGE
-    bends = np.array([curved(point.faces, code) for code in wide.code])
-    keep = ~bends if narrowed else np.zeros(wide.code.size, np.bool_)
-    also = np.array([curved(point.faces, code) or not narrowed for code in close.code])
+    keep, also = np.empty(wide.code.size, np.bool_), np.empty(close.code.size, np.bool_)
+    for p in range(wide.code.size):
+        keep[p] = narrowed and not curved(faces, wide.code[p])
+    for p in range(close.code.size):
+        also[p] = not narrowed or curved(faces, close.code[p])
     return only(wide, keep), only(close, also), lost, segments
