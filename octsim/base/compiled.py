@@ -1,12 +1,19 @@
 """Compiling to machine code, kept on disk for as long as no source behind it changes."""
 
+import hashlib
+import platform
 from collections.abc import Callable
+from importlib.metadata import version
 from pathlib import Path
 from types import FunctionType
 from typing import Any, TypeVar
 
+import llvmlite.binding
 import numba
 
+from octsim.base.compile_time import counted
+from octsim.base.compile_whole import as_a_whole
+from octsim.base.kept_code import KeptCode
 from octsim.base.provenance import PACKAGE, source_digest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -14,33 +21,69 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 def _sources(function: Callable[..., Any]) -> tuple[str | Path, ...]:
     """Return the module of a function, and the files of the functions that it is closed over."""
+    file = Path(function.__code__.co_filename)
+    own = function.__module__ if PACKAGE in file.parents else file
     held = (cell.cell_contents for cell in function.__closure__ or ())
     parts = (Path(part.__code__.co_filename) for part in held if isinstance(part, FunctionType))
-    return function.__module__, *parts
+    return own, *parts
 
 
-def compiled(**options: Any) -> Callable[[Function], Function]:
+def _digest(function: Callable[..., Any]) -> str:
+    """Digest all that a function's code follows from: sources, compiler and processor."""
+    settings: Any = numba.config
+    parts = (
+        source_digest(*_sources(function)),
+        platform.python_version(),
+        version("numba"),
+        version("llvmlite"),
+        settings.CPU_NAME or llvmlite.binding.get_host_cpu_name(),
+        settings.CPU_FEATURES,
+        settings.OPT,
+    )
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:12]
+
+
+def compiled(*apart: Callable[..., Any], **options: Any) -> Callable[[Function], Function]:
     """Compile a function when it is first called, without the interpreter's lock.
 
     numba's own cache looks at the time of the function's file alone and would go on using old
-    formulas from other files; here the cache's folder is named after the digest of all of them,
-    those of functions that it is closed over too, and after the processor that NUMBA_CPU_NAME asks
-    for, if it does.
-    Options are those of `numba.njit`.
+    formulas from other files; here code is kept below the digest of all of them, those of functions
+    that it is closed over too (`octsim.base.kept_code`).
+    What it calls is optimised once, with it (`octsim.base.compile_whole`).
+
+    Parameters
+    ----------
+    *apart : callable
+        Functions that it calls and that are optimised by themselves too, before: some loops are
+        computed in lanes only then.
+    **options
+        Those of `numba.njit`.
     """
 
     def compile_(function: Function) -> Function:
-        settings: Any = numba.config
-        asked = f"-{settings.CPU_NAME}" if settings.CPU_NAME else ""
-        digest = source_digest(*_sources(function))
-        folder = PACKAGE / "__pycache__" / f"numba-{digest}{asked}"
-        elsewhere, settings.CACHE_DIR = settings.CACHE_DIR, str(folder)
-        try:
-            dispatcher: Function = numba.njit(
-                cache=True, nogil=True, error_model="numpy", **options
-            )(function)
-        finally:
-            settings.CACHE_DIR = elsewhere
-        return dispatcher
+        chosen: Any = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True, **options}
+        dispatcher: Any = numba.njit(**chosen)(function)
+        if not isinstance(dispatcher, FunctionType):  # which it is with NUMBA_DISABLE_JIT
+            dispatcher._cache = kept = KeptCode(function, _digest(function))
+            dispatcher.compile = _whole(
+                dispatcher.compile, kept, frozenset(part.__name__ for part in apart)
+            )
+        made: Function = dispatcher
+        return made
 
     return compile_
+
+
+def _whole(
+    compile_: Callable[[Any], Any], kept: KeptCode, apart: frozenset[str]
+) -> Callable[[Any], Any]:
+    """Return a dispatcher's method `compile`, for the whole of what it compiles."""
+
+    def whole(sig: Any) -> Any:
+        try:
+            with counted(), as_a_whole(apart):
+                return compile_(sig)
+        finally:
+            kept.done()
+
+    return whole

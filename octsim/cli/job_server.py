@@ -41,6 +41,8 @@ def start() -> "tempfile.TemporaryDirectory[str] | None":
 
     None where there can be none, as the folder of temporary files has too long a name for a socket.
     """
+    from octsim.base.code_folder import VARIABLE, places, writable
+
     folder = tempfile.TemporaryDirectory(prefix="octsim-", ignore_cleanup_errors=True)
     path = f"{folder.name}/jobs"
     with socket.socket(socket.AF_UNIX) as listener:
@@ -48,6 +50,8 @@ def start() -> "tempfile.TemporaryDirectory[str] | None":
             listener.bind(path)
         except OSError:
             return None
+        if writable(places()) is None:  # then the jobs of this run share what they compile
+            os.environ[VARIABLE] = f"{folder.name}/compiled"
         listener.listen(64)  # from now on who asks is heard
         command = [PYTHON, "-m", "octsim.cli.job_server"]
         subprocess.Popen(

@@ -3,9 +3,11 @@
 import io
 import logging
 from collections.abc import Iterator
+from typing import Any
 
 from tqdm import tqdm
 
+from octsim.base.compile_time import compiled_for
 from octsim.datasets.streams import Part, Stream
 
 _BETWEEN_LINES = 60.0  # s
@@ -19,6 +21,13 @@ class _Lines(io.StringIO):
         if said := text.strip():
             logging.info("%s", said)
         return len(text)
+
+
+def _leave_out(seconds: float, *bars: "tqdm[Any]") -> None:
+    """Have bars begin when tracing did, after what compiling has taken."""
+    for bar in bars:
+        if not bar.disable:
+            bar.start_t, bar.last_print_t = bar.start_t + seconds, bar.last_print_t + seconds
 
 
 def watched(stream: Stream) -> Stream:
@@ -39,6 +48,7 @@ def watched(stream: Stream) -> Stream:
         ):  # fmt: skip
             for part in stream.parts:
                 yield part
+                _leave_out(compiled_for(), bar, lines)
                 bar.update(part.points)
                 lines.update(part.points)
 

@@ -1,12 +1,13 @@
 """Following rays along one light path: those that take it, to where they would leave the focus."""
 
 import math
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from octsim.base.records import layout
 from octsim.optics.beam import Beam
 from octsim.optics.detector import Detector, at_plane, rim_margin, to_fibre
 from octsim.tracing.blocks import advance_chosen, choose, keep, launch, meet_nearest, split
@@ -17,7 +18,7 @@ from octsim.tracing.lanes import CARRIED, LANES, PATH, RAY, direction, position
 _CARRIED, _launch, _move, _split, _ = AMPLITUDE
 
 
-class Bundle(NamedTuple):
+class Bundle:
     """What becomes of N rays on one light path."""
 
     followed: NDArray[np.bool_]
@@ -36,7 +37,7 @@ class Bundle(NamedTuple):
     """Path from the focus to the fibre, (N,), µm."""
 
 
-class FollowRoom(NamedTuple):
+class FollowRoom:
     """Room for a block of rays on its way."""
 
     blocks: NDArray[np.float64]
@@ -49,22 +50,19 @@ class FollowRoom(NamedTuple):
     chosen: NDArray[np.uint32]
 
 
-@register_jitable
-def room_for_following() -> FollowRoom:
-    """Make the room that `follow` works in."""
-    return FollowRoom(
-        np.empty((3, CARRIED + _CARRIED * LANES)), np.empty(LANES), np.empty(LANES),
-        np.empty(LANES), np.empty(LANES), np.empty(LANES, np.bool_), np.empty(LANES, np.int64),
-        np.empty(LANES, np.uint32),
-    )  # fmt: skip
+_each = (LANES,)
+FOLLOW_ROOM = layout(
+    FollowRoom, blocks=(3, CARRIED + _CARRIED * LANES), distance=_each, cos_i=_each, cos_met=_each,
+    cos_t=_each, wanted=_each, face=_each, chosen=_each,
+)  # fmt: skip
 
 
-@register_jitable
-def room_for_bundle() -> Bundle:
-    """Make the room that `follow` fills."""
-    return Bundle(
-        np.empty(LANES, np.bool_), np.empty(LANES), np.empty(LANES), np.empty(LANES),
-        np.empty(LANES), np.empty(LANES), np.empty(LANES),
+def bundle_of(rays: int) -> "np.dtype[Any]":
+    """Return the layout of a bundle with room for some rays."""
+    each = (rays,)
+    return layout(
+        Bundle, followed=each, x=each, y=each, cos=each, inside=each, amplitude=each,
+        optical_path_length=each,
     )  # fmt: skip
 
 
@@ -106,6 +104,9 @@ def follow(
     """
     now, met, beyond = room.blocks[0], room.blocks[1], room.blocks[2]
     launch(beam, 0, n, focus, now, _launch)
+    # slices are arrays of the kind that a tree works in, so that what both call is compiled once
+    distance, cos_i, cos_met = room.distance[:], room.cos_i[:], room.cos_met[:]
+    cos_t, met_face, chosen = room.cos_t[:], room.face[:], room.chosen[:]
     count, departure, segments = n, 0, 0
     for i in range(n):
         bundle.followed[i] = False
@@ -113,18 +114,18 @@ def follow(
         segments += count
         f = face[m]
         meet_nearest(
-            faces, departure, now, count, room.face, room.distance, room.cos_i, room.cos_met,
-            room.cos_t,
+            faces, departure, now, count, met_face, distance, cos_i, cos_met,
+            cos_t,
         )  # fmt: skip
-        kept = choose(room.face, f, count, room.chosen)
+        kept = choose(met_face, f, count, chosen)
         advance_chosen(
-            faces, f, now, count, room.chosen, kept, room.distance, room.cos_i, met, room.cos_met,
+            faces, f, now, count, chosen, kept, distance, cos_i, met, cos_met,
             _move,
         )  # fmt: skip
-        total = split(faces, f, met, kept, room.cos_met, room.cos_t, beyond, _split)
+        total = split(faces, f, met, kept, cos_met, cos_t, beyond, _split)
         if through[m] and total > 0:
             for i in range(kept):
-                room.wanted[i] = room.cos_t[i] >= 0
+                room.wanted[i] = cos_t[i] >= 0
             kept = keep(beyond, kept, room.wanted, _CARRIED)
         if through[m]:
             now, beyond = beyond, now

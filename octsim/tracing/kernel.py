@@ -58,10 +58,13 @@ class _Waiting(NamedTuple):
 
 @register_jitable(forceinline=True)
 def _doubled(arrived: _Arrived) -> _Arrived:
-    return _Arrived(
-        np.concatenate((arrived.labels, np.empty_like(arrived.labels))),
-        np.concatenate((arrived.numbers, np.empty_like(arrived.numbers))),
-    )
+    num, size = arrived.numbers.shape
+    labels, numbers = np.empty((2 * num, 2), np.int64), np.empty((2 * num, size))
+    for i in range(num):
+        labels[i, 0], labels[i, 1] = arrived.labels[i, 0], arrived.labels[i, 1]
+        for c in range(size):
+            numbers[i, c] = arrived.numbers[i, c]
+    return _Arrived(labels, numbers)
 
 
 @register_jitable(forceinline=True)
@@ -132,7 +135,7 @@ def make_tree(carry: Carry) -> Callable[..., tuple[Any, ...]]:
     carried, launch_carried, move, split_carried, strength = carry
     size = FIRST_CARRIED + carried
 
-    @compiled()
+    @compiled(advance_chosen, split)
     def trace_tree(
         faces: Faces,
         beam: Beam,

@@ -1,12 +1,14 @@
 """How far a stage is stands in its log, and changes nothing of it."""
 
 import logging
+from collections.abc import Iterator
 
 import pytest
 
 import octsim
+from octsim.base import compile_time
 from octsim.config.load import load_config
-from octsim.datasets.streams import in_memory
+from octsim.datasets.streams import Part, Stream, in_memory
 from octsim.stages import progress
 
 
@@ -26,6 +28,25 @@ def test_a_log_tells_how_far_a_stage_is_and_how_long_it_takes(
     assert watched.identical(octsim.detections(config))
     said = [record.getMessage() for record in caplog.records]
     assert any("detections:" in line and "10/15" in line and "point/s" in line for line in said)
+
+
+def test_a_bar_begins_when_tracing_does(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(progress, "_BETWEEN_LINES", 0.0)
+    compile_time.compiled_for()
+    config = load_config({"tracing": {"rays": 50}, "focus_scan": {"focus": {"num": 5}}})
+    stream = octsim.focus_scan.stream(config)
+
+    def compiling() -> Iterator[Part]:
+        for part in stream.parts:
+            compile_time._Spent.seconds += 1000.0
+            yield part
+
+    with caplog.at_level(logging.INFO):
+        list(progress.watched(Stream(stream.layout, compiling())).parts)
+    # it began, as far as the bar knows, in the future
+    assert any("5/5 [-1" in record.getMessage() for record in caplog.records)
 
 
 def test_what_is_short_is_not_told_of(caplog: pytest.LogCaptureFixture) -> None:

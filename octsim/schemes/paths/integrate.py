@@ -20,30 +20,34 @@ from octsim.optics.detector import Detector, acceptance
 from octsim.optics.scene import Plane, Scene
 from octsim.schemes.light import AccuracyStatus, Light
 from octsim.schemes.paths.aperture_tiles import images
-from octsim.schemes.paths.chebyshev import HIGHEST, LOOK, tables
-from octsim.schemes.paths.patch_integrals import rules
+from octsim.schemes.paths.chebyshev import HIGHEST, LOOK
+from octsim.schemes.paths.check_rays import CHECKS
 from octsim.schemes.paths.progress import SPARE, PathGoal, Progress, traced
 from octsim.schemes.paths.refine import settle
+from octsim.schemes.paths.strongest import strongest_first
 from octsim.schemes.paths.survey import COLUMNS, part_of_faint, recall, survey_aperture
 from octsim.schemes.paths.tile_nodes import aim_at_tile
 from octsim.schemes.paths.waiting_tiles import OpenTile, pop_strongest
 from octsim.schemes.paths.workspace import (
+    MOST_RAYS,
     Point,
     Survey,
     WeightedRays,
     Workspace,
     room_for_nodes,
     room_for_point,
+    tables_of,
 )
-from octsim.tracing.faces import faces_at
+from octsim.tracing.faces import Faces, faces_at
 from octsim.tracing.follow import follow
 from octsim.tracing.kernel import trace_amplitudes
-from octsim.tracing.lanes import LANES
 from octsim.tracing.light_paths import steps_of
 from octsim.tracing.tree import check_reach
 
 BUDGET = 1_000_000
 """Segments traced for one point, at most."""
+STEEP = 0.92
+"""Sine of the angle of light, from which on the aperture is surveyed closely."""
 _ATTEMPTS = 4
 _PEAK_SAMPLES = 32
 _ONE_PATH = 0.1  # of the accuracy, that a single path may use
@@ -78,24 +82,24 @@ def _peak(
 
 @register_jitable
 def _integrate_path(
-    point: Point, goal: PathGoal, survey: Survey, number: int, space: Workspace,
+    faces: Faces, point: Point, goal: PathGoal, survey: Survey, number: int, space: Workspace,
     rays: WeightedRays, count: int,
 ) -> tuple[WeightedRays, Progress]:  # fmt: skip
     """Integrate one path of a survey over the aperture; `count` rays are there already."""
-    meetings = steps_of(point.faces, goal.code, space.face, space.through)
-    space.waiting.size[0] = 0
+    meetings = steps_of(faces, goal.code, space.face, space.through)
+    space.waiting.num[0] = 0
     progress = Progress(count, 0.0, 0.0, 0.0, 0.0, 0)
     n, m = survey.orders
     work = OpenTile(survey.root, n, m, LOOK, 1.0, survey.bound[number], np.inf)
     recall(survey, number, point, space)
     while True:
         rays, progress = settle(point, goal, work, space, rays, progress)
-        if space.waiting.size[0] == 0:
+        if space.waiting.num[0] == 0:
             return rays, progress
         work = pop_strongest(space.waiting)
         aim_at_tile(point, work.tile, work.n, work.m, work.kind, space.beam)
         segments = follow(
-            point.faces, space.face, space.through, meetings, space.beam, work.n * work.m,
+            faces, space.face, space.through, meetings, space.beam, work.n * work.m,
             point.detector, point.focus, space.rays, space.bundle,
         )  # fmt: skip
         progress = traced(progress, segments)
@@ -103,18 +107,16 @@ def _integrate_path(
 
 @register_jitable
 def _integrate_all(
-    point: Point, wide: Survey, close: Survey, orders: tuple[int, int], relative: float,
-    scale: float, budget: int, space: Workspace, rays: WeightedRays,
+    faces: Faces, point: Point, wide: Survey, close: Survey, orders: tuple[int, int],
+    relative: float, scale: float, budget: int, space: Workspace, rays: WeightedRays,
 ) -> tuple[WeightedRays, Progress, float]:  # fmt: skip
     """Integrate the paths of two surveys, the strongest first, until the rest may be left out.
 
     Returns the rays, what has become of all of them, and the largest magnitude of the field over
     the band.
     """
-    bounds = np.concatenate((wide.bound, close.bound))
-    sizes, reach = np.zeros(bounds.size), np.zeros(bounds.size)
-    order = np.argsort(-bounds, kind="mergesort")
-    rest = np.append(np.cumsum(bounds[order][::-1])[::-1], 0.0)
+    order, rest = strongest_first(wide.bound, close.bound)
+    sizes, reach = np.zeros(order.size), np.zeros(order.size)
     done, paths = 0, Progress(0, 0.0, 0.0, 0.0, 0.0, 0)
     for p in order:
         known = max(scale, _peak(sizes, reach, point.k_mid, point.k_max), 0.03 * rest[0])
@@ -126,7 +128,7 @@ def _integrate_all(
             (budget - paths.segments) // 2,
         )  # fmt: skip
         first = paths.nodes
-        rays, path = _integrate_path(point, goal, survey, number, space, rays, first)
+        rays, path = _integrate_path(faces, point, goal, survey, number, space, rays, first)
         sizes[p], reach[p] = _mean_of(rays, first, path.nodes)
         paths = Progress(
             path.nodes, paths.size + path.size, max(paths.filled, path.filled),
@@ -146,22 +148,22 @@ def _integrate_all(
 
 @compiled()
 def _integrate(
-    point: Point, survey_orders: tuple[int, int], orders: tuple[int, int], max_intersections: int,
-    accuracy: float, budget: int,
+    faces: Faces, point: Point, survey_orders: tuple[int, int], orders: tuple[int, int],
+    max_intersections: int, accuracy: float, budget: int, space: Workspace,
 ) -> tuple[Any, ...]:  # fmt: skip
     # a plain tuple, as in trace_tree
-    space, rays = room_for_point(), room_for_nodes(16 * HIGHEST * HIGHEST)
+    rays = room_for_nodes(16 * HIGHEST * HIGHEST)
     accuracy = _MARGIN * accuracy
     faint, segments, scale, missing, count = 1e-3 * accuracy, 0, 0.0, 0.0, 0
     relative, status = _ONE_PATH * accuracy, AccuracyStatus.NOT_REACHED.value
     multiplicity = images(point.symmetric)
     for _ in range(_ATTEMPTS):
         wide, close, lost, surveyed = survey_aperture(
-            point, survey_orders, max_intersections, faint, space
+            faces, point, survey_orders, max_intersections, faint, space
         )
         segments += surveyed
         rays, paths, scale = _integrate_all(
-            point, wide, close, orders, relative, scale, budget - segments, space, rays
+            faces, point, wide, close, orders, relative, scale, budget - segments, space, rays
         )
         segments += paths.segments
         count = paths.nodes
@@ -186,7 +188,7 @@ def _integrate(
     )  # fmt: skip
 
 
-def light_misses(scene: Scene, point: Point) -> bool:
+def light_misses(scene: Scene, faces: Faces, point: Point) -> bool:
     """Return whether the outermost light, to either side in x, meets planes alone."""
     flat = tuple(surface for surface in scene.surfaces if isinstance(surface, Plane))
     if len(flat) == len(scene.surfaces):
@@ -199,7 +201,7 @@ def light_misses(scene: Scene, point: Point) -> bool:
         beam = Beam(vx[[side]], vy[[side]], vz[[side]], np.ones(1), np.zeros(1, np.int64))
         met = [
             trace_amplitudes(faces, beam, detector, acceptance(detector), point.focus, 3, 0.0)[2]
-            for faces in (point.faces, planes)
+            for faces in (faces, planes)
         ]
         if met[0] == met[1]:
             return True
@@ -256,13 +258,12 @@ def integrate(
         raise ValueError("the scene is not symmetric in y, which scheme paths takes for granted")
     low, high = band
     middle = (low + high) / 2
-    point = Point(
-        faces_at(scene, middle), symmetric, detector, focus, middle, high,
-        *tables(symmetric), *tables(True), rules(),
-    )  # fmt: skip
+    faces = faces_at(scene, middle)
+    point = Point(symmetric, detector, focus, middle, high, tables_of(symmetric))
     path, amplitude, rough_amplitude, optical_path_length, missing, segments, status = _integrate(
-        point, *_orders(accuracy, symmetric), max_intersections, accuracy, budget
-    )
+        faces, point, *_orders(accuracy, symmetric, steepest_sine(faces, detector)),
+        max_intersections, accuracy, budget, room_for_point(),
+    )  # fmt: skip
     return Light(
         path,
         amplitude,
@@ -271,16 +272,28 @@ def integrate(
         missing,
         segments,
         AccuracyStatus.AT_AN_EDGE
-        if status == AccuracyStatus.REACHED and light_misses(scene, point)
+        if status == AccuracyStatus.REACHED and light_misses(scene, faces, point)
         else AccuracyStatus(status),
     )
 
 
-def _orders(accuracy: float, symmetric: bool) -> tuple[tuple[int, int], tuple[int, int]]:
+def steepest_sine(faces: Faces, detector: Detector) -> float:
+    """Return the largest sine of light's angle with the axis; above 1 past the critical angle."""
+    radius, distance = detector.objective_radius, detector.focus_distance
+    least = float(min(faces.n_i.min(), faces.n_t.min()))
+    return radius / math.hypot(radius, distance) * faces.n_objective / least
+
+
+def _orders(
+    accuracy: float, symmetric: bool, steepest: float
+) -> tuple[tuple[int, int], tuple[int, int]]:
     """Return the numbers of nodes along each axis to begin with: of the survey and of a tile."""
     digits = -math.log10(accuracy)
     along_s = min(max(3, round(2 + digits)), 9)
     along_v = max(3, along_s - 2)
+    if steepest > STEEP:
+        # near grazing incidence light goes to and fro, and its way changes fast
+        along_s, along_v = 12, (MOST_RAYS - CHECKS) // 12
     # where nothing says that patches are near x = 0, all of the aperture is looked at closely
-    survey = (along_s if symmetric else min(COLUMNS, LANES // along_v)), along_v
+    survey = (along_s if symmetric else min(COLUMNS, (MOST_RAYS - CHECKS) // along_v)), along_v
     return survey, (min(max(4, round(digits + 1)), 10), min(max(3, round(0.5 * digits + 1)), 8))

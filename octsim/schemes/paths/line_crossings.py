@@ -1,9 +1,11 @@
 """Lines through a tile, and where they cross the patch whose light is detected.
 
 On a tile the line along which a ray returns is a polynomial; where light is detected, and with what
-falloff, follows from that without tracing another ray. A returning line is known by its moments
-about the focus, (X cos θ, Y cos θ) for one that crosses the focal plane at (X, Y) at an angle θ:
-they stay finite where θ comes near a right angle.
+falloff, follows from that without tracing another ray. How far inside the detector's image and the
+objective's rim light returns are then polynomials along a line too, whose roots are all found
+(`polynomial_roots`): between two of them light is detected everywhere or nowhere. A returning line
+is known by its moments about the focus, (X cos θ, Y cos θ) for one that crosses the focal plane at
+(X, Y) at an angle θ: they stay finite where θ comes near a right angle.
 """
 
 import math
@@ -13,19 +15,28 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from octsim.base.records import layout
 from octsim.optics.detector import falloff
 from octsim.schemes.paths.aperture_tiles import Tile
 from octsim.schemes.paths.chebyshev import HIGHEST, polynomials
+from octsim.schemes.paths.polynomial_roots import (
+    HALVES,
+    MOST_COEFFICIENTS,
+    BernsteinTables,
+    add_square,
+    append_roots,
+    sort,
+    to_bernstein,
+    unscale,
+    value_at,
+)
 
-_SAMPLES = 6  # of a line through a tile, to see where it enters and leaves the patch
-_CUTS = 4 * _SAMPLES
-_STEPS = 60
-_CLOSE, _ROUGHLY = 1e-13, 1e-8  # the falloff is zero at an edge, so that may be a little off
+MOST_CROSSINGS = MOST_COEFFICIENTS + 2 * HIGHEST
 LESS_S, LESS_V = 2, 1
 """Orders that a rougher rule has less along s and v. Errors along s can alternate in size."""
 
 
-class Map(NamedTuple):
+class Map:
     """Where the rays of a tile return to, as Chebyshev coefficients in (s, v)."""
 
     x: NDArray[np.float64]
@@ -38,7 +49,7 @@ class Map(NamedTuple):
     """`octsim.optics.detector.rim_margin`."""
 
 
-class TileLine(NamedTuple):
+class TileLine:
     """A `Map` at one ξ: coefficients in v, and room to work in."""
 
     x: NDArray[np.float64]
@@ -54,22 +65,27 @@ class TileLine(NamedTuple):
     """Polynomials in v, where last evaluated."""
     cuts: NDArray[np.float64]
     """Where the line enters and leaves the patch."""
-    places: NDArray[np.float64]
-    margins: NDArray[np.float64]
+    scaled: NDArray[np.float64]
+    """Of one polynomial after the other, as Bernstein coefficients."""
+    at_detector: NDArray[np.float64]
+    """Margin at the detector's image, cos² θ − (X² + Y²) cos² θ / R_det², as Bernstein's."""
+    at_rim: NDArray[np.float64]
+    """Margin at the objective's rim, the same."""
+    roots: NDArray[np.float64]
+    halves: NDArray[np.float64]
     exact: NDArray[np.float64]
     """Integrals along the line."""
     rough: NDArray[np.float64]
 
 
-@register_jitable
-def room_for_line() -> TileLine:
-    """Make the room that `moments` works in."""
-    size = HIGHEST
-    return TileLine(
-        np.empty(size), np.empty(size), np.empty(size), np.empty(size), np.empty(size),
-        np.empty(size), np.empty(size), np.empty(size), np.empty(_CUTS), np.empty(_CUTS),
-        np.empty(_CUTS), np.empty(size), np.empty(size),
-    )  # fmt: skip
+_square, _each, _both = (HIGHEST, HIGHEST), (HIGHEST,), (MOST_COEFFICIENTS,)
+_crossings = (MOST_CROSSINGS,)
+MAP = layout(Map, x=_square, y=_square, cos=_square, inside=_square)
+TILE_LINE = layout(
+    TileLine, x=_each, y=_each, cos=_each, inside=_each, rough_x=_each, rough_y=_each, t=_each,
+    u=_each, cuts=_crossings, scaled=_each, at_detector=_both, at_rim=_both, roots=_crossings,
+    halves=HALVES, exact=_each, rough=_each,
+)  # fmt: skip
 
 
 class Cut(NamedTuple):
@@ -81,6 +97,7 @@ class Cut(NamedTuple):
     tile: Tile
     symmetric: bool
     detector_radius: float
+    bernstein: BernsteinTables
 
 
 @register_jitable
@@ -103,33 +120,7 @@ def set_line(cut: Cut, xi: float, line: TileLine) -> None:
         line.rough_x[b], line.rough_y[b] = x, along
 
 
-@register_jitable
-def margins(cut: Cut, xi: float, line: TileLine, y: float) -> tuple[float, float, float]:
-    """Return how far inside the detector's image, and the objective's rim, light returns (> 0).
-
-    And how far to the side of the focus, over R_det, which changes its sign within a patch.
-    """
-    tile = cut.tile
-    polynomials((y * y - tile.v_min) / (tile.v_max - tile.v_min), cut.m, line.u)
-    to_x, to_y, cos, inside = 0.0, 0.0, 0.0, 0.0
-    for b in range(cut.m):
-        to_x += line.x[b] * line.u[b]
-        to_y += line.y[b] * line.u[b]
-        cos += line.cos[b] * line.u[b]
-        inside += line.inside[b] * line.u[b]
-    scale_x = xi * math.sqrt(1 - y * y) if cut.symmetric else 1.0
-    to_x, to_y = to_x * scale_x / cut.detector_radius, to_y * y / cut.detector_radius
-    return cos * cos - to_x * to_x - to_y * to_y, inside, to_x
-
-
 @register_jitable(forceinline=True)
-def margin(cut: Cut, xi: float, line: TileLine, y: float) -> float:
-    """Return how far inside the patch a place on a line is (> 0)."""
-    at_detector, at_rim, _ = margins(cut, xi, line, y)
-    return min(at_detector, at_rim)
-
-
-@register_jitable
 def falloffs(cut: Cut, xi: float, line: TileLine, y: float) -> tuple[float, float]:
     """Return the falloff at a place on a line, and that from a rougher map."""
     tile, m = cut.tile, cut.m
@@ -152,105 +143,74 @@ def falloffs(cut: Cut, xi: float, line: TileLine, y: float) -> tuple[float, floa
 
 
 @register_jitable
-def _falsi(low: float, at_low: float, high: float, at_high: float) -> float:
-    """Return where to look next for a zero between two of different sign (false position)."""
-    x = (low * at_high - high * at_low) / (at_high - at_low)
-    return x if min(low, high) < x < max(low, high) else 0.5 * (low + high)
+def _margin_at_detector(
+    cut: Cut, line: TileLine, n: int, x_0: float, x_1: float, y_0: float, y_1: float
+) -> None:
+    """Fill in the margin at the detector along a line of the tile, from n coefficients in it.
 
-
-@register_jitable(forceinline=True)
-def _narrowed(
-    low: float, at_low: float, high: float, at_high: float, side: int, x: float, here: float
-) -> tuple[float, float, float, float, int]:
-    """Put a place between two in the stead of that of its sign.
-
-    By the Illinois rule: a value that stays twice counts half. `side` tells which came last.
+    `x_0` and `x_1` are what X² is multiplied by at the line's ends, `y_0` and `y_1` what Y² is.
     """
-    if (here > 0) == (at_high > 0):
-        return low, (0.5 * at_low if side == 1 else at_low), x, here, 1
-    return x, here, high, (0.5 * at_high if side == -1 else at_high), -1
-
-
-@register_jitable
-def edge(cut: Cut, xi: float, line: TileLine, low: float, high: float) -> float:
-    """Return where the margin along a line changes its sign (Illinois)."""
-    at_low, at_high, side = margin(cut, xi, line, low), margin(cut, xi, line, high), 0
-    y = low
-    for _ in range(_STEPS):
-        y = _falsi(low, at_low, high, at_high)
-        here = margin(cut, xi, line, y)
-        if abs(here) < _ROUGHLY or abs(high - low) < _ROUGHLY * (abs(low) + abs(high)):
-            break
-        low, at_low, high, at_high, side = _narrowed(low, at_low, high, at_high, side, y, here)
-    return y
-
-
-@register_jitable
-def end_of(cut: Cut, line: TileLine, y: float, which: int, low: float, high: float) -> float:
-    """Return the ξ at which one of the margins at one y changes its sign (Illinois)."""
-    set_line(cut, low, line)
-    at_low = margins(cut, low, line, y)[which]
-    set_line(cut, high, line)
-    at_high, side = margins(cut, high, line, y)[which], 0
-    xi = low
-    for _ in range(_STEPS):
-        xi = _falsi(low, at_low, high, at_high)
-        set_line(cut, xi, line)
-        here = margins(cut, xi, line, y)[which]
-        if abs(here) < _CLOSE or abs(high - low) < _CLOSE * (abs(low) + abs(high)):
-            break
-        low, at_low, high, at_high, side = _narrowed(low, at_low, high, at_high, side, xi, here)
-    return xi
+    table, margin, over = cut.bernstein.from_chebyshev[n], line.at_detector, cut.detector_radius**-2
+    margin[: 2 * n] = 0.0
+    to_bernstein(line.cos, n, table, line.scaled)
+    add_square(1.0, line.scaled, n, 1.0, 1.0, margin)
+    to_bernstein(line.x, n, table, line.scaled)
+    add_square(-over, line.scaled, n, x_0, x_1, margin)
+    to_bernstein(line.y, n, table, line.scaled)
+    add_square(-over, line.scaled, n, y_0, y_1, margin)
+    unscale(margin, 2 * n, cut.bernstein.binomials)
 
 
 @register_jitable(forceinline=True)
-def turns_back(left: float, middle: float, right: float) -> bool:
-    """Return whether three margins of one sign come nearest to zero in the middle."""
-    if middle > 0:
-        return left > 0 and right > 0 and min(left, right) >= middle and left + right > 2 * middle
-    return left <= 0 and right <= 0 and max(left, right) <= middle and left + right < 2 * middle
+def _reaches_rim(line: TileLine, n: int) -> bool:
+    """Return whether not all of a line is within the objective's rim."""
+    least: float = line.inside[0]
+    for b in range(1, n):
+        least -= abs(line.inside[b])
+    return least <= 0
 
 
 @register_jitable
-def _sample(cut: Cut, xi: float, line: TileLine) -> int:
-    """List places along a line, and the margins there, that show each change of sign."""
-    y_min, y_max = math.sqrt(cut.tile.v_min), math.sqrt(cut.tile.v_max)
-    step = (y_max - y_min) / _SAMPLES
-    places, margins = line.places, line.margins
-    left, middle, num = 0.0, 0.0, 0
-    for i in range(_SAMPLES + 1):
-        y = y_min + i * step
-        right = margin(cut, xi, line, y)
-        if i >= 2 and turns_back(left, middle, right):
-            # it turns before it reaches zero, as far as three places tell: look closer
-            offset = 0.5 * (left - right) / (left - 2 * middle + right)
-            turn = y - step + offset * step
-            here = margin(cut, xi, line, turn)
-            if offset < 0:
-                places[num], margins[num] = places[num - 1], margins[num - 1]
-                places[num - 1], margins[num - 1] = turn, here
-            else:
-                places[num], margins[num] = turn, here
-            num += 1
-        places[num], margins[num] = y, right
-        left, middle, num = middle, right, num + 1
-    return num
+def _roots(cut: Cut, line: TileLine, n: int, margin: NDArray[np.float64], num: int) -> int:
+    """Append the roots of n coefficients to those of a line."""
+    return append_roots(margin, n, cut.bernstein.binomials, line.halves, line.roots, num)
+
+
+@register_jitable(forceinline=True)
+def _set_rim(cut: Cut, line: TileLine, n: int) -> None:
+    """Fill in the margin at the objective's rim along a line of the tile."""
+    to_bernstein(line.inside, n, cut.bernstein.from_chebyshev[n], line.at_rim)
+    unscale(line.at_rim, n, cut.bernstein.binomials)
 
 
 @register_jitable
 def cross(cut: Cut, xi: float, line: TileLine) -> int:
     """List where the line at ξ enters and leaves the patch, in pairs; return how many."""
     set_line(cut, xi, line)
-    num, found = _sample(cut, xi, line), 0
-    if line.margins[0] > 0:
-        line.cuts[0] = line.places[0]
-        found = 1
-    for i in range(1, num):
-        if (line.margins[i] > 0) != (line.margins[i - 1] > 0):
-            line.cuts[found] = edge(cut, xi, line, line.places[i - 1], line.places[i])
+    m, tile, binomials = cut.m, cut.tile, cut.bernstein.binomials
+    over_x = xi * xi if cut.symmetric else 1.0
+    less = over_x if cut.symmetric else 0.0
+    _margin_at_detector(
+        cut, line, m, over_x - less * tile.v_min, over_x - less * tile.v_max, tile.v_min, tile.v_max
+    )
+    num, rim = _roots(cut, line, 2 * m, line.at_detector, 0), _reaches_rim(line, m)
+    if rim:
+        _set_rim(cut, line, m)
+        num = _roots(cut, line, m, line.at_rim, num)
+        sort(line.roots, num)
+    found, begin = 0, 0.0
+    for i in range(num + 1):
+        end = line.roots[i] if i < num else 1.0
+        middle = 0.5 * (begin + end)
+        inside = value_at(line.at_detector, 2 * m, binomials, middle) > 0 and not (
+            rim and value_at(line.at_rim, m, binomials, middle) <= 0
+        )
+        if inside != (found % 2 == 1):
+            line.cuts[found] = math.sqrt(tile.v_min + (tile.v_max - tile.v_min) * begin)
             found += 1
-    if line.margins[num - 1] > 0:
-        line.cuts[found] = line.places[num - 1]
+        begin = end
+    if found % 2 == 1:
+        line.cuts[found] = math.sqrt(tile.v_max)
         found += 1
     return found
 
@@ -258,9 +218,34 @@ def cross(cut: Cut, xi: float, line: TileLine) -> int:
 @register_jitable
 def crossing_kind(cut: Cut, xi: float, line: TileLine) -> tuple[int, bool, bool]:
     """Return how a line crosses the patch: how often, and whether at its ends."""
-    set_line(cut, xi, line)
-    num = _sample(cut, xi, line)
-    changes = 0
-    for i in range(1, num):
-        changes += 1 if (line.margins[i] > 0) != (line.margins[i - 1] > 0) else 0
-    return changes, line.margins[0] > 0, line.margins[num - 1] > 0
+    found = cross(cut, xi, line)
+    at_low = found > 0 and line.cuts[0] == math.sqrt(cut.tile.v_min)
+    at_high = found > 0 and line.cuts[found - 1] == math.sqrt(cut.tile.v_max)
+    return found, at_low, at_high
+
+
+@register_jitable
+def cross_edge(cut: Cut, v: float, line: TileLine) -> int:
+    """List the places c along s at which light at v is at the edge of the patch, or at x = 0.
+
+    They are put into the line's `roots`, in no order; returns how many.
+    """
+    n, tile, returns = cut.n, cut.tile, cut.returns
+    polynomials((v - tile.v_min) / (tile.v_max - tile.v_min), cut.m, line.u)
+    for a in range(n):
+        x, along, cos, inside = 0.0, 0.0, 0.0, 0.0
+        for b in range(cut.m):
+            x += returns.x[a, b] * line.u[b]
+            along += returns.y[a, b] * line.u[b]
+            cos += returns.cos[a, b] * line.u[b]
+            inside += returns.inside[a, b] * line.u[b]
+        line.x[a], line.y[a], line.cos[a], line.inside[a] = x, along, cos, inside
+    low, high = ((1 - v) * tile.s_min, (1 - v) * tile.s_max) if cut.symmetric else (1.0, 1.0)
+    _margin_at_detector(cut, line, n, low, high, v, v)
+    num = _roots(cut, line, 2 * n, line.at_detector, 0)
+    if _reaches_rim(line, n):
+        _set_rim(cut, line, n)
+        num = _roots(cut, line, n, line.at_rim, num)
+    to_bernstein(line.x, n, cut.bernstein.from_chebyshev[n], line.scaled)
+    unscale(line.scaled, n, cut.bernstein.binomials)
+    return _roots(cut, line, n, line.scaled, num)

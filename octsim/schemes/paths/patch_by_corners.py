@@ -12,22 +12,38 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.schemes.paths.aperture_tiles import Tile, between, fraction
+from octsim.schemes.paths.check_rays import CheckRays, field_seen
 from octsim.tracing.follow import Bundle
 
 USUALLY, NEAR_AN_EDGE = 0.5, 1.0
 """How far a quantity may go on past known corners; and where light can miss a cylinder."""
+_ELSEWHERE = 2.0  # what it may vary by, over what it does elsewhere in a tile
+
+
+@register_jitable(forceinline=True)
+def _difference(
+    values: NDArray[np.float64], followed: NDArray[np.bool_], n: int, m: int, p: int, q: int,
+    here: float,
+) -> float:  # fmt: skip
+    """Return how far a quantity at a node is from a value; −1 if the node is not known."""
+    if 0 <= p < n and 0 <= q < m and followed[p * m + q]:
+        there: float = values[p * m + q]
+        return abs(there - here)
+    return -1.0
 
 
 @register_jitable
 def _variation(
-    values: NDArray[np.float64], followed: NDArray[np.bool_], n: int, m: int, i: int, j: int
+    values: NDArray[np.float64], followed: NDArray[np.bool_], n: int, m: int, along_v: bool
 ) -> float:
-    """Return the largest difference of a quantity at a node from that at its neighbours."""
-    here, most = values[i * m + j], 0.0
-    for step_i, step_j in ((-1, 0), (1, 0), (0, -1), (0, 1)):
-        p, q = i + step_i, j + step_j
-        if 0 <= p < n and 0 <= q < m and followed[p * m + q]:
-            most = max(most, abs(values[p * m + q] - here))
+    """Return the largest difference of a tile's neighbours along one axis; −1 without any."""
+    most = -1.0
+    for p in range(n):
+        for q in range(m):
+            if followed[p * m + q]:
+                here = values[p * m + q]
+                there = (p, q + 1) if along_v else (p + 1, q)
+                most = max(most, _difference(values, followed, n, m, there[0], there[1], here))
     return most
 
 
@@ -42,29 +58,42 @@ def _span(
     extrapolation: float,
 ) -> tuple[float, float, float]:
     """Return the bounds of a quantity in a cell, as its corners tell, and its variation."""
-    least, most, vary, known = np.inf, -np.inf, 0.0, 0
+    least, most, known = np.inf, -np.inf, 0
+    vary_s, vary_v = -1.0, -1.0
     for p in (i, i + 1):
         for q in (j, j + 1):
             if followed[p * m + q]:
-                least, most = min(least, values[p * m + q]), max(most, values[p * m + q])
-                vary = max(vary, _variation(values, followed, n, m, p, q))
+                here = values[p * m + q]
+                least, most = min(least, here), max(most, here)
+                for step in (-1, 1):
+                    vary_s = max(vary_s, _difference(values, followed, n, m, p + step, q, here))
+                    vary_v = max(vary_v, _difference(values, followed, n, m, p, q + step, here))
                 known += 1
-    slack = extrapolation * vary
     if known == 4:
         vary = most - least
-        slack = 0.5 * vary
-    if vary == 0:  # a lone corner: nothing tells how it varies, so that may be by all of it
+        return least - 0.5 * vary, most + 0.5 * vary, vary
+    # what the cell's own corners do not tell, the tile's others do, less surely
+    if vary_s < 0:
+        vary_s = _ELSEWHERE * _variation(values, followed, n, m, False)
+    if vary_v < 0:
+        vary_v = _ELSEWHERE * _variation(values, followed, n, m, True)
+    vary = max(vary_s, vary_v)
+    if min(vary_s, vary_v) < 0 or vary == 0:
+        # along one axis nothing tells how it varies, so that may be by all of it
         return min(least, 0.0), max(most, 0.0), max(abs(least), abs(most))
-    return least - slack, most + slack, vary
+    return least - extrapolation * vary, most + extrapolation * vary, vary
 
 
 @register_jitable(forceinline=True)
 def _part_within(span: tuple[float, float, float], radius: float) -> float:
-    """Estimate the part of a cell in which a quantity is within a radius; 0 if in none."""
+    """Estimate the part of a cell in which a quantity is within a radius; 0 if in none.
+
+    As where it turns back there, like a square: where it varies evenly the part is less.
+    """
     low, high, vary = span
     if low > radius or high < -radius:
         return 0.0
-    return min(1.0, 2 * radius / (high - low)) if vary > 0 else 1.0
+    return math.sqrt(min(1.0, 2 * radius / (high - low))) if vary > 0 else 1.0
 
 
 @register_jitable(forceinline=True)
@@ -154,12 +183,14 @@ class Cells(NamedTuple):
 def reached(
     bundle: Bundle, n: int, m: int, along_s: NDArray[np.float64], along_v: NDArray[np.float64],
     tile: Tile, cells: Cells, symmetric: bool, detector_radius: float, extrapolation: float,
+    checks: CheckRays,
 ) -> tuple[float, Tile]:  # fmt: skip
     """Return the part of some cells of a partially covered tile that the patch can be in.
 
     Nothing is fitted; cells between nodes are left out if their corners are well beside the
     detector or beyond the objective's rim, or if no corner takes the path. Towards a corner that is
     not known a quantity may go on by `extrapolation` times what it varies between known ones.
+    A cell where a check ray is detected is not left out.
 
     Returns
     -------
@@ -177,6 +208,9 @@ def reached(
                 tile.s_min + s * along_s[i], tile.s_max, tile.v_min + v * along_v[j], tile.v_max
             )
             here = _cell(bundle, n, m, i, j, cell, start, symmetric, detector_radius, extrapolation)
+            # about both axes the patch's size is known from its slopes
+            if here == 0 or i > 0 or j > 0 or not symmetric:
+                here = max(here, field_seen(checks, cell, symmetric))
             if here > 0:
                 left, right = min(left, i), max(right, i)
                 below, above = min(below, j), max(above, j)

@@ -1,12 +1,12 @@
 """Where in a tile the patch is whose light is detected, as the tile's polynomials tell."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from octsim.base.records import layout
 from octsim.schemes.paths.aperture_tiles import Tile, across
 from octsim.schemes.paths.chebyshev import HIGHEST, polynomials, trailing
 from octsim.schemes.paths.line_crossings import Map
@@ -14,7 +14,7 @@ from octsim.schemes.paths.line_crossings import Map
 _CELLS = 16  # along each side of a tile, to look for the patch in
 
 
-class Search(NamedTuple):
+class Search:
     """Room to look through a tile in."""
 
     x: NDArray[np.float64]
@@ -25,14 +25,10 @@ class Search(NamedTuple):
     row: NDArray[np.float64]
 
 
-@register_jitable
-def room_for_search() -> Search:
-    """Make the room that `holding` works in."""
-    return Search(
-        np.empty((_CELLS + 1, _CELLS + 1)), np.empty((_CELLS + 1, _CELLS + 1)),
-        np.empty((_CELLS + 1, _CELLS + 1)), np.empty((_CELLS + 1, HIGHEST)), np.empty(HIGHEST),
-        np.empty(HIGHEST),
-    )  # fmt: skip
+_grid = (_CELLS + 1, _CELLS + 1)
+SEARCH = layout(
+    Search, x=_grid, y=_grid, inside=_grid, t=(_CELLS + 1, HIGHEST), u=(HIGHEST,), row=(HIGHEST,)
+)
 
 
 @register_jitable(forceinline=True)

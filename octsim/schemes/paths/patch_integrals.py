@@ -1,33 +1,30 @@
 """Integrals over the part of a tile of the aperture whose light is detected."""
 
 import math
-from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from octsim.base.records import layout
 from octsim.schemes.paths.aperture_tiles import across
 from octsim.schemes.paths.chebyshev import HIGHEST
 from octsim.schemes.paths.line_crossings import (
+    MOST_CROSSINGS,
     Cut,
     TileLine,
     cross,
+    cross_edge,
     crossing_kind,
-    end_of,
     falloffs,
-    margins,
-    set_line,
-    turns_back,
 )
+from octsim.schemes.paths.polynomial_roots import sort
 
-_LINES = 24  # through a tile, to see where the way that they cross the patch changes
 _BETWEEN = 4  # parts between places where that is known to change
 _PIECES = 64  # of a tile, at most
 
 
-class Rules(NamedTuple):
+class Rules:
     """Quadrature rules: nodes and weights on 0 … 1."""
 
     gauss: NDArray[np.float64]
@@ -40,19 +37,23 @@ class Rules(NamedTuple):
     """Gauss's weights of those, 0 for the other nodes, (15,)."""
 
 
-@cache
-def rules() -> Rules:
-    """Return the quadrature rules."""
-    most = HIGHEST + 6
-    nodes, weights = np.zeros((most, most)), np.zeros((most, most))
-    for q in range(1, most):
+_MOST = HIGHEST + 6  # nodes of a rule, and one more
+RULES = layout(
+    Rules, gauss=(_MOST, _MOST), gauss_weight=(_MOST, _MOST), kronrod=(15,), kronrod_weight=(15,),
+    embedded_weight=(15,),
+)  # fmt: skip
+
+
+def fill_rules(rules: Rules) -> None:
+    """Fill in the quadrature rules."""
+    rules.gauss[:], rules.gauss_weight[:], rules.embedded_weight[:] = 0.0, 0.0, 0.0
+    for q in range(1, _MOST):
         x, w = np.polynomial.legendre.leggauss(q)
-        nodes[q, :q], weights[q, :q] = (x + 1) / 2, w / 2
+        rules.gauss[q, :q], rules.gauss_weight[q, :q] = (x + 1) / 2, w / 2
     seven, seven_weight = np.polynomial.legendre.leggauss(7)
     fifteen, fifteen_weight = _kronrod(seven)
-    embedded = np.zeros(15)
-    embedded[1::2] = seven_weight / 2
-    return Rules(nodes, weights, (fifteen + 1) / 2, fifteen_weight / 2, embedded)
+    rules.kronrod[:], rules.kronrod_weight[:] = (fifteen + 1) / 2, fifteen_weight / 2
+    rules.embedded_weight[1::2] = seven_weight / 2
 
 
 def _kronrod(gauss: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -79,55 +80,15 @@ def _kronrod(gauss: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[n
 
 
 @register_jitable
-def _edges(cut: Cut, line: TileLine, breaks: NDArray[np.float64], num: int) -> int:
-    """Add the ξ at which a margin at the lower or upper edge of a tile changes its sign."""
-    xi_min, xi_max = across(cut.tile.s_min, cut.symmetric), across(cut.tile.s_max, cut.symmetric)
-    step = (xi_max - xi_min) / _LINES
-    edges = (math.sqrt(cut.tile.v_min), math.sqrt(cut.tile.v_max))
-    values = np.empty((2, 3, _LINES + 1))
-    for i in range(_LINES + 1):
-        xi = xi_min + i * step
-        set_line(cut, xi, line)
-        for e in range(2):
-            values[e, 0, i], values[e, 1, i], values[e, 2, i] = margins(cut, xi, line, edges[e])
-    for e in range(2):
-        for which in range(3):
-            num = _changes(cut, line, edges[e], which, values[e, which], breaks, num)
-    return num
-
-
-@register_jitable
-def _changes(
-    cut: Cut, line: TileLine, y: float, which: int, values: NDArray[np.float64],
-    breaks: NDArray[np.float64], num: int,
-) -> int:  # fmt: skip
-    """Add the ξ at which one margin changes its sign, from its values at even steps."""
-    xi_min, xi_max = across(cut.tile.s_min, cut.symmetric), across(cut.tile.s_max, cut.symmetric)
-    step = (xi_max - xi_min) / _LINES
-    for i in range(1, _LINES + 1):
-        xi = xi_min + i * step
-        if (values[i] > 0) != (values[i - 1] > 0):
-            breaks[num] = end_of(cut, line, y, which, xi - step, xi)
-            num += 1
-        elif i >= 2 and turns_back(values[i - 2], values[i - 1], values[i]):
-            # it turns before it reaches zero, as far as three places tell: look closer
-            left, middle, right = values[i - 2], values[i - 1], values[i]
-            turn = xi - step + 0.5 * step * (left - right) / (left - 2 * middle + right)
-            set_line(cut, turn, line)
-            if (margins(cut, turn, line, y)[which] > 0) != (middle > 0):
-                breaks[num] = end_of(cut, line, y, which, xi - 2 * step, turn)
-                breaks[num + 1] = end_of(cut, line, y, which, turn, xi)
-                num += 2
-    return num
-
-
-@register_jitable
 def _breaks(cut: Cut, line: TileLine, breaks: NDArray[np.float64]) -> int:
     """List the ξ at which the way that lines cross the patch changes, both ends included."""
-    xi_min, xi_max = across(cut.tile.s_min, cut.symmetric), across(cut.tile.s_max, cut.symmetric)
-    breaks[0], breaks[1] = xi_min, xi_max
-    num = _edges(cut, line, breaks, 2)
-    breaks[:num] = np.sort(breaks[:num])
+    tile, num = cut.tile, 2
+    breaks[0], breaks[1] = across(tile.s_min, cut.symmetric), across(tile.s_max, cut.symmetric)
+    for v in (tile.v_min, tile.v_max):
+        for root in line.roots[: cross_edge(cut, v, line)]:
+            breaks[num] = across(tile.s_min + (tile.s_max - tile.s_min) * root, cut.symmetric)
+            num += 1
+    sort(breaks, num)
     # between those, a line may still begin or cease to cross the patch within the tile
     known = num
     for i in range(1, known):
@@ -139,7 +100,7 @@ def _breaks(cut: Cut, line: TileLine, breaks: NDArray[np.float64]) -> int:
             after = crossing_kind(cut, high, line)
             if after != before and num < breaks.size:
                 inner, outer = low, high
-                for _ in range(40):
+                for _ in range(28):
                     half = 0.5 * (inner + outer)
                     if crossing_kind(cut, half, line) == before:
                         inner = half
@@ -148,11 +109,11 @@ def _breaks(cut: Cut, line: TileLine, breaks: NDArray[np.float64]) -> int:
                 breaks[num] = 0.5 * (inner + outer)
                 num += 1
             low, before = high, after
-    breaks[:num] = np.sort(breaks[:num])
+    sort(breaks, num)
     return num
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def _along(cut: Cut, xi: float, rules: Rules, line: TileLine) -> None:
     """Integrate the falloff times each polynomial in v along a line."""
     m = cut.m
@@ -213,7 +174,7 @@ def moments(
     for a in range(n):
         for b in range(m):
             exact[a, b], rough[a, b] = 0.0, 0.0
-    breaks = np.empty(16 * _LINES)
+    breaks = np.empty(2 + 8 * MOST_CROSSINGS)
     num = _breaks(cut, line, breaks)
     below, above = np.empty(_PIECES), np.empty(_PIECES)
     here, here_rough = np.empty((n, m)), np.empty((n, m))

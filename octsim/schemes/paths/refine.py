@@ -13,6 +13,7 @@ from numba.extending import register_jitable
 
 from octsim.schemes.paths.aperture_tiles import Tile, area, between, fraction
 from octsim.schemes.paths.chebyshev import FIT, HIGHEST, LOOK
+from octsim.schemes.paths.check_rays import field_seen, sees_beside
 from octsim.schemes.paths.line_crossings import LESS_S, LESS_V
 from octsim.schemes.paths.patch_by_corners import Cells, corner, reached
 from octsim.schemes.paths.patch_by_fit import holding
@@ -33,6 +34,8 @@ from octsim.schemes.paths.waiting_tiles import MOST_TILES, OpenTile, push, push_
 from octsim.schemes.paths.workspace import Point, WeightedRays, Workspace
 from octsim.tracing.lanes import LANES
 
+_MOST_TO_LOOK = 9  # nodes along an axis that polynomials fit, of those to look with
+_BLOCK = 4  # cells along an axis of those that go on as one
 MIXED = 4
 """Nodes along each axis of a partially covered tile."""
 # by how much an error falls with each order, typically (its logarithm)
@@ -102,7 +105,8 @@ def _look(
         The corner next to the axes whose nodes all take the path; its n is 0 if there is none.
     """
     tile, n, m, kind, allotment, _, _ = work
-    along_s, along_v, radius = point.nodes_s[kind, n], point.nodes_v[kind, m], point.detector.radius
+    along_s, along_v = point.tables.nodes_s[kind, n], point.tables.nodes_v[kind, m]
+    radius = point.detector.radius
     p, q = corner(space.bundle.followed, n, m) if kind == LOOK else (0, 0)
     missing = 0.0
     # all of the tile, or what lies to the right of the corner and above it
@@ -113,7 +117,7 @@ def _look(
     for cells in parts:
         bound, part = reached(
             space.bundle, n, m, along_s, along_v, tile, cells, point.symmetric, radius,
-            extrapolation,
+            extrapolation, space.checks,
         )  # fmt: skip
         rest = OpenTile(part, MIXED, MIXED, LOOK, allotment, bound, np.inf)
         if bound <= 0.25 * max(may_miss - missing, 0.0):
@@ -126,6 +130,38 @@ def _look(
         return missing, OpenTile(tile, 0, 0, kind, allotment, 0.0, np.inf)
     near = between(tile, n, m, along_s, along_v, 0, p - 1, 0, q - 1)
     return missing, OpenTile(near, p, q, kind, allotment, 0.0, np.inf)
+
+
+@register_jitable
+def _look_closely(
+    point: Point, work: OpenTile, may_miss: float, goal: PathGoal, covered: bool, space: Workspace
+) -> float:
+    """Have the parts of a tile with many nodes wait, as its cells tell; return what is left out.
+
+    `covered` is one that all nodes take the path of. Others go on in blocks of a few cells, so that
+    nothing of what their nodes tell is forgotten.
+    """
+    tile, n, m, kind, allotment, _, _ = work
+    along_s, along_v = point.tables.nodes_s[kind, n], point.tables.nodes_v[kind, m]
+    radius = point.detector.radius
+    step_s, step_v = (n - 1, m - 1) if covered else (_BLOCK, _BLOCK)
+    orders, next_kind = (goal.orders, FIT) if covered else ((MIXED, MIXED), LOOK)
+    missing = 0.0
+    for i in range(0, n - 1, step_s):
+        for j in range(0, m - 1, step_v):
+            cells = Cells(i, min(i + step_s, n - 1), j, min(j + step_v, m - 1))
+            bound, part = reached(
+                space.bundle, n, m, along_s, along_v, tile, cells, point.symmetric, radius,
+                goal.extrapolation, space.checks,
+            )  # fmt: skip
+            if bound <= 0.25 * max(may_miss - missing, 0.0):
+                missing += bound
+            else:
+                push(
+                    space.waiting,
+                    OpenTile(part, orders[0], orders[1], next_kind, allotment, bound, np.inf),
+                )
+    return missing
 
 
 @register_jitable
@@ -167,6 +203,7 @@ def _fit(
     `rest` is the part that the patch can be in, `strongest` the largest amplitude.
     """
     tile, n, m, field = work.tile, work.n, work.m, rest.bound
+    seen = field_seen(space.checks, tile, point.symmetric) > 0
     relative = goal.relative * work.allotment
     tolerance = relative * max(goal.scale, progress.size)
     map_s, map_v = map_errors(point, tile, n, m, space)
@@ -180,15 +217,16 @@ def _fit(
     # the integral costs more than a look at the coefficients, which overestimates the error
     if end or error <= 30 * max(tolerance, relative * typical):
         close = 0.1 * max(tolerance, 0.1 * relative * field) / strongest
-        total = weigh(point, tile, n, m, close, space)
+        total, off = weigh(point, tile, n, m, close, space)
         size, error = sum_tile(point, n, m, space)
         error += (rim_s + rim_v) * total * strongest
+        error += off * max(total * strongest, field if seen else 0.0)
         tolerance = relative * max(goal.scale, progress.size + size)
     if total > 0 and (error <= tolerance or end):
         return _kept(rays, goal, work, space, progress, size, total, error)
     # where no patch is seen there is at most a rim, as faint as the map's error leaves room for
     rim = field * min(1.0, 4 * (map_s + map_v))
-    if end or (total == 0 and rim <= 0.25 * spare(goal, progress)):
+    if end or (total == 0 and not seen and rim <= 0.25 * spare(goal, progress)):
         return rays, left_out(progress, rim)
     _refine(
         point, work, rest, total == 0, TileErrors(error_s, error_v, error),
@@ -225,10 +263,19 @@ def settle(
         Both as they are then.
     """
     stride, symmetric = work.m, point.symmetric
-    end = progress.segments > goal.budget or space.waiting.size[0] + 5 > MOST_TILES
+    end = progress.segments > goal.budget or space.waiting.num[0] + 5 > MOST_TILES
     followed, strongest = followed_of(space, work.n * work.m)
     if followed == 0:
+        seen = field_seen(space.checks, work.tile, symmetric)
+        if end or seen <= 0.25 * spare(goal, progress):
+            return rays, left_out(progress, seen)
+        push_halves(space.waiting, work, symmetric)
         return rays, progress
+    if work.kind == LOOK and max(work.n, work.m) > _MOST_TO_LOOK:
+        missing = _look_closely(
+            point, work, spare(goal, progress), goal, followed == work.n * work.m, space
+        )
+        return rays, left_out(progress, missing)
     if followed < work.n * work.m:
         allowed = goal.relative * work.allotment * max(goal.scale, progress.size)
         guess = CRUDE * fraction(work.tile, symmetric) * strongest
@@ -245,6 +292,10 @@ def settle(
     cells, smaller = holding(
         space.returns, work.n, work.m, work.tile, symmetric, point.detector.radius, space.search
     )
+    if sees_beside(space.checks, work.tile, smaller) or (
+        cells == 0 and field_seen(space.checks, work.tile, symmetric) > 0
+    ):
+        cells, smaller = 1.0, work.tile  # the polynomials are wrong
     field = cells * strongest * fraction(work.tile, symmetric)
     if field <= 0.25 * spare(goal, progress):
         return rays, left_out(progress, field)

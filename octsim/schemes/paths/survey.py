@@ -1,5 +1,7 @@
 """A few rays over the aperture, through the whole tree: which light paths there are, and where."""
 
+from typing import Any
+
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
@@ -8,13 +10,13 @@ from octsim.optics.beam import Beam
 from octsim.optics.detector import Acceptance, Outcome
 from octsim.schemes.paths.aperture_tiles import Tile, area, between
 from octsim.schemes.paths.chebyshev import LOOK
+from octsim.schemes.paths.check_rays import CHECKS, place_of, weight_of
 from octsim.schemes.paths.patch_by_corners import NEAR_AN_EDGE, USUALLY, Cells, reached
-from octsim.schemes.paths.tile_nodes import aim_at_tile, followed_of
-from octsim.schemes.paths.workspace import Point, Survey, Workspace
+from octsim.schemes.paths.tile_nodes import aim_at, aim_at_tile, followed_of
+from octsim.schemes.paths.workspace import MOST_RAYS, Point, Survey, Workspace
 from octsim.tracing.faces import Faces, is_flat
 from octsim.tracing.follow import note_return
 from octsim.tracing.kernel import AT_VX, AT_VY, AT_X, AT_Y, FIRST_CARRIED, trace_amplitudes
-from octsim.tracing.lanes import LANES
 
 CLOSER_LOOKS = 6
 COLUMNS = 24
@@ -23,61 +25,111 @@ COLUMNS = 24
 
 @register_jitable
 def recall(survey: Survey, number: int, point: Point, space: Workspace) -> None:
-    """Fill a bundle with the rays of one path of the survey."""
-    space.bundle.followed[: survey.orders[0] * survey.orders[1]] = False
+    """Fill a bundle with the rays of one path of the survey, and note its check rays."""
+    bundle, checks, nodes = space.bundle, space.checks, survey.orders[0] * survey.orders[1]
+    bundle.followed[:] = False
     for i in range(survey.begin[number], survey.end[number]):
         ray = survey.ray[i]
         note_return(
-            space.bundle, ray, point.detector, survey.x[i], survey.y[i], survey.vx[i], survey.vy[i]
+            bundle, ray, point.detector, survey.x[i], survey.y[i], survey.vx[i], survey.vy[i]
         )
-        space.bundle.amplitude[ray] = survey.amplitude[i]
+        bundle.amplitude[ray] = survey.amplitude[i]
+    checks.s[:], checks.v[:], checks.detected[0] = survey.check_s, survey.check_v, 0
+    for i in range(CHECKS):
+        ray = nodes + i
+        checks.weight[i] = 0.0
+        if bundle.followed[ray]:
+            checks.weight[i] = weight_of(
+                bundle.x[ray], bundle.y[ray], bundle.cos[ray], bundle.inside[ray],
+                point.detector.radius,
+            )  # fmt: skip
+            checks.amplitude[i] = bundle.amplitude[ray]
+        if checks.weight[i] > 0:
+            checks.detected[0] += 1
+
+
+@register_jitable
+def by_path(codes: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return an order in which the rays of a path stand together, and where each path begins.
+
+    Those of one block of rays do already.
+    """
+    order, firsts = np.empty(codes.size, np.int64), np.empty(codes.size + 1, np.int64)
+    done = np.zeros(codes.size, np.bool_)
+    count, paths = 0, 0
+    for begin in range(codes.size):
+        if done[begin]:
+            continue
+        firsts[paths], paths = count, paths + 1
+        for i in range(begin, codes.size):
+            if codes[i] == codes[begin]:
+                order[count], done[i], count = i, True, count + 1
+    firsts[paths] = count
+    return order, firsts[: paths + 1]
+
+
+@register_jitable
+def in_order(values: NDArray[Any], order: NDArray[np.int64]) -> NDArray[Any]:
+    """Return some values in an order; to index by it takes numba longer to compile."""
+    chosen = np.empty(order.size, values.dtype)
+    for i in range(order.size):
+        chosen[i] = values[order[i]]
+    return chosen
 
 
 @register_jitable
 def survey_of(
-    point: Point, root: Tile, n: int, m: int, max_intersections: int, min_amplitude: float,
-    extrapolation: float, space: Workspace,
+    faces: Faces, point: Point, root: Tile, n: int, m: int, max_intersections: int,
+    min_amplitude: float, extrapolation: float, space: Workspace,
 ) -> tuple[Survey, float, int]:  # fmt: skip
-    """Trace the whole tree from n x m nodes of a tile: paths, faint rays a node, segments."""
+    """Trace the whole tree from n x m nodes of a tile: paths, faint rays a node, segments.
+
+    Check rays go with them.
+    """
     aim_at_tile(point, root, n, m, LOOK, space.beam)
+    check_s, check_v = np.empty(CHECKS), np.empty(CHECKS)
+    for i in range(CHECKS):
+        check_s[i], check_v[i] = place_of(root, point.symmetric, i)
+        aim_at(point, check_s[i], check_v[i], space.beam, n * m + i)
+    count = n * m + CHECKS
     beam = Beam(
-        space.beam.vx[: n * m], space.beam.vy[: n * m], space.beam.vz[: n * m],
-        space.beam.amplitude[: n * m], space.beam.number[: n * m],
+        space.beam.vx[:count], space.beam.vy[:count], space.beam.vz[:count],
+        space.beam.amplitude[:count], space.beam.number[:count],
     )  # fmt: skip
     # all that returns: rays beside the detector tell where between them a patch is
     labels, numbers, segments, outcomes = trace_amplitudes(
-        point.faces, beam, point.detector, Acceptance(np.inf, np.inf), point.focus,
+        faces, beam, point.detector, Acceptance(np.inf, np.inf), point.focus,
         max_intersections, min_amplitude,
     )  # fmt: skip
-    codes = labels[1]
-    # one block of rays, so the rays of a path stand together
-    firsts = np.flatnonzero(np.append(True, codes[1:] != codes[:-1])[: codes.size])
-    lasts = np.append(firsts[1:], codes.size)[: firsts.size]
+    order, firsts = by_path(labels[1])
+    paths = firsts.size - 1
     survey = Survey(
         root,
         (n, m),
-        codes[firsts],
-        firsts,
-        lasts,
+        in_order(labels[1], order[firsts[:paths]]),
+        firsts[:paths],
+        firsts[1:],
         extrapolation,
-        np.zeros(firsts.size),
-        np.zeros(firsts.size),
-        labels[0],
-        numbers[FIRST_CARRIED],
-        numbers[AT_X],
-        numbers[AT_Y],
-        numbers[AT_VX],
-        numbers[AT_VY],
+        np.zeros(paths),
+        np.zeros(paths),
+        in_order(labels[0], order),
+        in_order(numbers[FIRST_CARRIED], order),
+        in_order(numbers[AT_X], order),
+        in_order(numbers[AT_Y], order),
+        in_order(numbers[AT_VX], order),
+        in_order(numbers[AT_VY], order),
+        check_s,
+        check_v,
     )
     every = Cells(0, n - 1, 0, m - 1)
-    for p in range(firsts.size):
+    for p in range(paths):
         recall(survey, p, point, space)
-        survey.strongest[p] = followed_of(space, n * m)[1]
+        survey.strongest[p] = followed_of(space, count)[1]
         survey.bound[p], _ = reached(
-            space.bundle, n, m, point.nodes_s[LOOK, n], point.nodes_v[LOOK, m], root, every,
-            point.symmetric, point.detector.radius, extrapolation,
+            space.bundle, n, m, point.tables.nodes_s[LOOK, n], point.tables.nodes_v[LOOK, m], root,
+            every, point.symmetric, point.detector.radius, extrapolation, space.checks,
         )  # fmt: skip
-    return survey, outcomes[Outcome.FAINT] / (n * m), segments
+    return survey, outcomes[Outcome.FAINT] / count, segments
 
 
 @register_jitable
@@ -86,7 +138,8 @@ def only(survey: Survey, wanted: NDArray[np.bool_]) -> Survey:
     return Survey(
         survey.root, survey.orders, survey.code[wanted], survey.begin[wanted],
         survey.end[wanted], survey.extrapolation, survey.bound[wanted], survey.strongest[wanted],
-        survey.ray, survey.amplitude, survey.x, survey.y, survey.vx, survey.vy,
+        survey.ray, survey.amplitude, survey.x, survey.y, survey.vx, survey.vy, survey.check_s,
+        survey.check_v,
     )  # fmt: skip
 
 
@@ -103,15 +156,17 @@ def curved(faces: Faces, code: int) -> bool:
 
 
 @register_jitable
-def closer(point: Point, survey: Survey) -> tuple[bool, Tile]:
+def closer(faces: Faces, point: Point, survey: Survey) -> tuple[bool, Tile]:
     """Return whether not all of a survey's columns met more than planes, and the part that did."""
     n, m = survey.orders
-    root, along_s = survey.root, point.nodes_s[LOOK, n]
+    root, along_s = survey.root, point.tables.nodes_s[LOOK, n]
     left, right = n, -1
     for p in range(survey.code.size):
-        if curved(point.faces, survey.code[p]):
+        if curved(faces, survey.code[p]):
             for i in range(survey.begin[p], survey.end[p]):
                 column = survey.ray[i] // m
+                if column >= n:
+                    continue
                 # at the top of the aperture all columns are one place
                 if root.v_max < 1 or survey.ray[i] % m < m - 1:
                     left, right = min(left, column), max(right, column)
@@ -133,6 +188,7 @@ def part_of_faint(survey: Survey, amplitude: float) -> float:
 
 @register_jitable
 def survey_aperture(
+    faces: Faces,
     point: Point,
     orders: tuple[int, int],
     max_intersections: int,
@@ -153,19 +209,20 @@ def survey_aperture(
     n, m = orders
     root = Tile(0.0 if point.symmetric else -1.0, 1.0, 0.0, 1.0)
     wide, lost, segments = survey_of(
-        point, root, n, m, max_intersections, min_amplitude, USUALLY, space
+        faces, point, root, n, m, max_intersections, min_amplitude, USUALLY, space
     )
     close = wide
     for _ in range(CLOSER_LOOKS):
-        edge, tile = closer(point, close)
+        edge, tile = closer(faces, point, close)
         much = area(tile, point.symmetric) > 0.8 * area(close.root, point.symmetric)
         if not edge or (much and close.extrapolation == NEAR_AN_EDGE):
             break
         # past the cylinder's edge: near it the light's way changes fast
         close, lost, traced = survey_of(
+            faces,
             point,
             tile,
-            min(COLUMNS, LANES // m),
+            min(COLUMNS, (MOST_RAYS - CHECKS) // m),
             m,
             max_intersections,
             min_amplitude,
@@ -174,7 +231,9 @@ def survey_aperture(
         )
         segments += traced
     narrowed = close.extrapolation == NEAR_AN_EDGE
-    bends = np.array([curved(point.faces, code) for code in wide.code])
-    keep = ~bends if narrowed else np.zeros(wide.code.size, np.bool_)
-    also = np.array([curved(point.faces, code) or not narrowed for code in close.code])
+    keep, also = np.empty(wide.code.size, np.bool_), np.empty(close.code.size, np.bool_)
+    for p in range(wide.code.size):
+        keep[p] = narrowed and not curved(faces, wide.code[p])
+    for p in range(close.code.size):
+        also[p] = not narrowed or curved(faces, close.code[p])
     return only(wide, keep), only(close, also), lost, segments

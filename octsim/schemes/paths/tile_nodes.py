@@ -10,6 +10,7 @@ from octsim.optics.beam import Beam, aim
 from octsim.optics.detector import falloff
 from octsim.schemes.paths.aperture_tiles import Tile, across, images
 from octsim.schemes.paths.chebyshev import FIT, trailing, transform
+from octsim.schemes.paths.check_rays import weight_error
 from octsim.schemes.paths.line_crossings import LESS_S, LESS_V, Cut
 from octsim.schemes.paths.patch_integrals import moments
 from octsim.schemes.paths.workspace import Point, WeightedRays, Workspace
@@ -19,18 +20,23 @@ CRUDE = 0.25
 _CLOSER = 1 / 3  # error of a rule, over how far a rougher one is from it, at most
 
 
+@register_jitable(forceinline=True)
+def aim_at(point: Point, s: float, v: float, beam: Beam, k: int) -> None:
+    """Aim a beam's ray k at a place of the aperture."""
+    radius, xi = point.detector.objective_radius, across(s, point.symmetric)
+    x, y = xi * math.sqrt(1 - v) * radius, math.sqrt(v) * radius
+    beam.vx[k], beam.vy[k], beam.vz[k] = aim(x, y, point.detector.focus_distance)
+
+
 @register_jitable
 def aim_at_tile(point: Point, tile: Tile, n: int, m: int, kind: int, beam: Beam) -> None:
     """Aim a beam's first n x m rays at the nodes of a tile."""
-    radius = point.detector.objective_radius
-    along_s, along_v = point.nodes_s[kind, n], point.nodes_v[kind, m]
+    along_s, along_v = point.tables.nodes_s[kind, n], point.tables.nodes_v[kind, m]
     for i in range(n):
-        xi = across(tile.s_min + (tile.s_max - tile.s_min) * along_s[i], point.symmetric)
+        s = tile.s_min + (tile.s_max - tile.s_min) * along_s[i]
         for j in range(m):
             v = tile.v_min + (tile.v_max - tile.v_min) * along_v[j]
-            x, y = xi * math.sqrt(1 - v) * radius, math.sqrt(v) * radius
-            k = i * m + j
-            beam.vx[k], beam.vy[k], beam.vz[k] = aim(x, y, point.detector.focus_distance)
+            aim_at(point, s, v, beam, i * m + j)
 
 
 @register_jitable
@@ -38,8 +44,12 @@ def map_tile(
     point: Point, tile: Tile, n: int, m: int, stride: int, kind: int, space: Workspace
 ) -> None:
     """Fit polynomials to where a tile's rays return to; `stride` rays have the same s."""
-    bundle, along_s, along_v = space.bundle, point.nodes_s[kind, n], point.nodes_v[kind, m]
-    to_s, to_v = point.transforms_s[kind, n], point.transforms_v[kind, m]
+    bundle, along_s, along_v = (
+        space.bundle,
+        point.tables.nodes_s[kind, n],
+        point.tables.nodes_v[kind, m],
+    )
+    to_s, to_v = point.tables.transforms_s[kind, n], point.tables.transforms_v[kind, m]
     values, others = space.values, space.others
     for j in range(m):
         v = tile.v_min + (tile.v_max - tile.v_min) * along_v[j]
@@ -62,17 +72,24 @@ def map_tile(
 
 
 @register_jitable
-def weigh(point: Point, tile: Tile, n: int, m: int, tolerance: float, space: Workspace) -> float:
-    """Find the weight of each node of a tile, and by a rougher rule; return their sum."""
-    cut = Cut(space.returns, n, m, tile, point.symmetric, point.detector.radius)
-    total = moments(cut, tolerance, point.rules, space.line, space.exact, space.rough)
+def weigh(
+    point: Point, tile: Tile, n: int, m: int, tolerance: float, space: Workspace
+) -> tuple[float, float]:
+    """Find the weight of each node of a tile, and by a rougher rule.
+
+    Returns their sum, and how far off the tile's polynomials put the falloff of check rays.
+    """
+    cut = Cut(
+        space.returns, n, m, tile, point.symmetric, point.detector.radius, point.tables.bernstein
+    )
+    total = moments(cut, tolerance, point.tables.rules, space.line, space.exact, space.rough)
     _to_nodes(point, space.exact, n, m, n, m, space.between, space.weight)
     _to_nodes(point, space.rough, n - LESS_S, m - LESS_V, n, m, space.between, space.rough_weight)
     for i in range(n):
         for j in range(m):
             difference = space.rough_weight[i, j] - space.weight[i, j]
             space.rough_weight[i, j] = space.weight[i, j] + _CLOSER * difference
-    return total
+    return total, weight_error(space.checks, cut, space.line)
 
 
 @register_jitable
@@ -81,7 +98,7 @@ def _to_nodes(
     between: NDArray[np.float64], weight: NDArray[np.float64],
 ) -> None:  # fmt: skip
     """Turn p x q integrals of polynomials into the weights of n x m nodes."""
-    along_s, along_v = point.transforms_s[FIT, n], point.transforms_v[FIT, m]
+    along_s, along_v = point.tables.transforms_s[FIT, n], point.tables.transforms_v[FIT, m]
     for a in range(p):
         for j in range(m):
             total = 0.0
@@ -106,7 +123,7 @@ def weigh_crudely(
     Returns the magnitude of the field, and its error, taken for a fixed part of it.
     """
     bundle, radius = space.bundle, point.detector.radius
-    along_s, along_v = point.nodes_s[kind, n], point.nodes_v[kind, m]
+    along_s, along_v = point.tables.nodes_s[kind, n], point.tables.nodes_v[kind, m]
     multiplicity, size = images(point.symmetric), 0.0
     s_width, v_width = tile.s_max - tile.s_min, tile.v_max - tile.v_min
     for i in range(n):
@@ -226,7 +243,7 @@ def field_errors(point: Point, n: int, m: int, space: Workspace) -> tuple[float,
             phase = point.k_max * bundle.optical_path_length[i * m + j]
             values[i, j] = amplitude * math.cos(phase)
             others[i, j] = amplitude * math.sin(phase)
-    to_s, to_v = point.transforms_s[FIT, n], point.transforms_v[FIT, m]
+    to_s, to_v = point.tables.transforms_s[FIT, n], point.tables.transforms_v[FIT, m]
     transform(values, n, m, to_s, to_v, space.between, space.exact)
     transform(others, n, m, to_s, to_v, space.between, space.rough)
     along_s, along_v = 0.0, 0.0

@@ -7,6 +7,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from octsim.base.records import layout, room
 from octsim.schemes.paths.aperture_tiles import Tile, across, halves
 
 MOST_TILES = 4096
@@ -31,29 +32,33 @@ class OpenTile(NamedTuple):
     """Error estimate with fewer nodes; infinite if there were none."""
 
 
-class WaitingTiles(NamedTuple):
+class WaitingTiles:
     """Room for open tiles, in no order."""
 
     rows: NDArray[np.float64]
     """The numbers of each, (MOST_TILES, 10)."""
-    size: NDArray[np.int64]
+    num: NDArray[np.int64]
     """How many wait, (1,)."""
 
 
-@register_jitable
+WAITING_TILES = layout(WaitingTiles, rows=(MOST_TILES, 10), num=(1,))
+
+
 def room_for_waiting() -> WaitingTiles:
-    """Make the room that tiles wait in."""
-    return WaitingTiles(np.empty((MOST_TILES, 10)), np.zeros(1, np.int64))
+    """Make the room that tiles wait in; none do."""
+    made: WaitingTiles = room(WAITING_TILES)
+    made.num[0] = 0
+    return made
 
 
 @register_jitable
 def push(waiting: WaitingTiles, one: OpenTile) -> None:
     """Have a tile wait."""
-    row = waiting.rows[waiting.size[0]]
+    row = waiting.rows[waiting.num[0]]
     row[0], row[1], row[2], row[3] = one.tile
     row[4], row[5], row[6] = one.n, one.m, one.kind
     row[7], row[8], row[9] = one.allotment, one.bound, one.coarser_error
-    waiting.size[0] += 1
+    waiting.num[0] += 1
 
 
 @register_jitable
@@ -72,7 +77,7 @@ def push_halves(waiting: WaitingTiles, one: OpenTile, symmetric: bool) -> None:
 @register_jitable
 def pop_strongest(waiting: WaitingTiles) -> OpenTile:
     """Take out the tile of the largest estimated field."""
-    last = waiting.size[0] - 1
+    last = waiting.num[0] - 1
     best = last
     for i in range(last):
         if waiting.rows[i, 8] > waiting.rows[best, 8]:
@@ -82,6 +87,7 @@ def pop_strongest(waiting: WaitingTiles) -> OpenTile:
         Tile(row[0], row[1], row[2], row[3]), int(row[4]), int(row[5]), int(row[6]), row[7],
         row[8], row[9],
     )  # fmt: skip
-    waiting.rows[best] = waiting.rows[last]
-    waiting.size[0] = last
+    for i in range(row.size):  # a slice assigned takes more than a second to compile
+        row[i] = waiting.rows[last, i]
+    waiting.num[0] = last
     return strongest

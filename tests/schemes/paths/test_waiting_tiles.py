@@ -24,7 +24,7 @@ def test_the_tile_of_the_largest_field_is_taken_first() -> None:
     for tile in (WIDE, STRONG, FAINT):
         push(waiting, tile)
     assert [pop_strongest(waiting) for _ in range(3)] == [STRONG, WIDE, FAINT]
-    assert waiting.size[0] == 0
+    assert waiting.num[0] == 0
 
 
 @pytest.mark.parametrize("symmetric", [True, False])
