@@ -46,6 +46,7 @@ def watched(stream: Stream) -> Stream:
                 ncols=100,
             ) as lines,
         ):  # fmt: skip
+            compiled_for()  # before these bars
             for part in stream.parts:
                 yield part
                 _leave_out(compiled_for(), bar, lines)

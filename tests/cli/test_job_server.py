@@ -98,3 +98,16 @@ def _is_there(process: int) -> bool:
     except OSError:
         return False
     return text.rpartition(")")[2].split()[0] != "Z"
+
+
+def test_jobs_of_a_run_share_compiled_code_where_none_can_be_kept(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    code = (
+        "import os\nfrom octsim.cli import job_server\n"
+        "folder = job_server.start()\n"
+        "print(os.environ['NUMBA_CACHE_DIR'].startswith(folder.name))\n"
+    )
+    for place, within in ((tmp_path / "file" / "kept", "True"), (tmp_path / "kept", "False")):
+        environment = os.environ | {"NUMBA_CACHE_DIR": str(place)}
+        said = subprocess.check_output([sys.executable, "-c", code], env=environment, text=True)
+        assert said.strip() == within
