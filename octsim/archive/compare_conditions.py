@@ -11,12 +11,12 @@ from octsim.stages.gaussian_fits import GAUSSIAN_PARAMETERS
 
 TOLERANCE = 1e-12
 """Relative difference up to which numbers of one environment count as the same."""
-LIGHT = 1e-8
+LIGHT = 2e-8
 """Of the light, relative, and of phases, rad. Rounding moves a phase by less than 1e-9 rad
-(`octsim.config.checks`), twice of which is in an intensity. A fitted focus moves it more: least
-squares end once a step changes the sum of squares by less than 1e-12 of it, which leaves the centre
-√1e-12 = 1e-6 of its standard error away; that error is some 1e-2 of the focus, in µm, over which
-the phase turns by about a radian."""
+(`octsim.config.checks`), twice of which is in an intensity. A fitted focus moves it more: before
+0.4.0 least squares ended once a step changed the sum of squares by less than 1e-12 of it, which
+left the centre √1e-12 = 1e-6 of its standard error away; that error is some 1e-2 of the focus, in
+µm, over which the phase turns by a radian or two."""
 ESTIMATED_ERROR = 1e-4
 """Of estimated errors: differences of numbers that agree to the accuracy asked for, 1e-4 and less
 of them, so that LIGHT is this much of the difference."""

@@ -16,7 +16,7 @@ from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.config.processing import Processing, options_read
 from octsim.datasets.catalog import CATALOG, STAGES
-from octsim.phase.estimators import ESTIMATORS, estimate
+from octsim.phase.estimators import ESTIMATORS, phases
 
 ROOT = Path(__file__).parents[2]
 
@@ -160,7 +160,7 @@ def test_an_estimator_reads_the_options_that_are_said_to_be_read(
     k, depth = np.linspace(7, 9.7, 200), np.array([1.9])
     spectra = 2 + np.cos(2 * 1.9 * (k - k.mean()) + 0.3)[np.newaxis]
     read: set[str] = set()
-    estimate(spectra, k, depth, Watched(processing, read))  # type: ignore[arg-type]
+    phases(spectra, k, depth, Watched(processing, read))  # type: ignore[arg-type]
     # the transform reads them for fourier.nc, whatever the estimator; and all read a given depth
     read -= {"estimator", "centre", "window", "centre_degree"}
     if estimator == "fft":

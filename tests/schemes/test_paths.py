@@ -139,7 +139,7 @@ def test_the_error_falls_with_the_accuracy_and_is_not_underestimated() -> None:
 
 def test_a_point_needs_far_fewer_segments_than_the_tree() -> None:
     light = integrate(scene_of(CONFIG, 1.4), detector_of(CONFIG), 0.8824, BAND, 1e-4)
-    assert light.segments < 8000  # 3000 rays: 215 302, with an error of 0.8 %
+    assert light.segments < 11000  # 3000 rays: 215 302, with an error of 0.8 %
 
 
 def test_light_that_misses_the_cylinder_is_named() -> None:

@@ -29,7 +29,7 @@ def test_a_gaussian_comes_back(
 
 
 @given(st.floats(0.42, 0.88), st.floats(0.0005, 0.008))
-def test_a_peak_that_few_foci_are_on_is_found_within_a_step(centre: float, width: float) -> None:
+def test_a_peak_that_few_foci_are_on_is_found_within_two_steps(centre: float, width: float) -> None:
     intensity = gaussian(FOCI, centre, width, 1.0, 0.1)
     intensity[0] += 0.01  # or nothing but rounding may be left of a peak between two foci
     fit = fit_gaussian(FOCI, intensity)
@@ -37,7 +37,8 @@ def test_a_peak_that_few_foci_are_on_is_found_within_a_step(centre: float, width
         assert fit.status is FitStatus.NO_INTERIOR_PEAK
     else:
         assert fit.status is FitStatus.FITTED
-        assert abs(fit.parameters[0] - centre) < FOCI[1] - FOCI[0]
+        # one focus alone may be on it
+        assert abs(fit.parameters[0] - centre) < 2 * (FOCI[1] - FOCI[0])
 
 
 SHAPES = {

