@@ -17,9 +17,14 @@ from octsim.base.errors import DatasetError
 from octsim.base.files import reason
 from octsim.datasets.files import opened
 
-ADDED = frozenset({"phase_status"})
-"""Variables that files of 0.1.0 lack, and that say of others where they hold nothing. Rounding
-decides at the limit, so that they are judged within one environment alone."""
+ADDED = frozenset(
+    {
+        "phase_status", "fringe_status", "fringe_visibility", "centre_use", "brightest_focus",
+        "relative_residual", "error_status", "rest_scatter", "smallest_step", "drift",
+    }
+)  # fmt: skip
+"""Variables that older files lack, and that say of others where they hold nothing or how good they
+are. Rounding decides at the limit, so that they are judged within one environment alone."""
 SCALARS: Mapping[str, tuple[str, ...]] = {
     "focus_law": ("slope", "intercept"),
     "phase_slope": (
