@@ -68,10 +68,12 @@ def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[
     """Return the slopes of some diameters of a part that holds their neighbours too."""
     inner = slice(before, before + span.stop - span.start)
     diameter, k = part["diameter"].values, config.spectrum.wavenumbers()
-    phase = part["phase"].values
+    phase, fringe = part["phase"].values, {}
     if "fringe_status" in part:  # files of 0.3.0 and before don't have it
-        visible = np.isin(part["fringe_status"].values, WITH_PHASE)
+        status = part["fringe_status"]
+        visible = np.isin(status.values, WITH_PHASE)
         phase = np.where(visible[:, np.newaxis], phase, np.nan)
+        fringe["fringe_status"] = "diameter", status.values[inner], status.attrs
     found = phase_slopes(diameter, part["magnitude"].values, phase)
     n_neuron = config.scene.refractive_index.neuron
     spectra = ideal_spectra(n_neuron, diameter, k)
@@ -81,9 +83,8 @@ def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[
     if not by_components(config):
         slope = slope_of(diameter, part["estimated_phase"].values)
         ideal_slope = slope_of(diameter, ideal_phases(config, spectra, diameter, k))
-    fringe = {name: part[name].isel(diameter=inner) for name in ("fringe_status",) if name in part}
     return {
-        **{name: (one.dims, one.values, one.attrs) for name, one in fringe.items()},
+        **fringe,
         "phase_slope": ("diameter", slope[inner]),
         "strongest_component": ("diameter", found.component[inner]),
         "component_phase_slope": (("diameter", "component"), found.by_component[inner]),

@@ -10,6 +10,7 @@ from octsim.phase.cut_samples import are_cut
 from octsim.phase.derivatives import wrapped
 from octsim.phase.estimators.by_name import expected_depths, phases
 from octsim.phase.estimators.estimate import Array, Estimate, Phases
+from octsim.phase.estimators.fft import peak_depths
 from octsim.phase.estimators.sinusoid import Fit, fit_sinusoid
 from octsim.phase.estimators.visible import (
     SIGNIFICANT,
@@ -66,10 +67,9 @@ def estimate(
     status, residual = unusable(intensity, wavenumber, start), intensity.std(axis=1)
     found = np.full((6, len(intensity)), np.nan)
     rows = np.flatnonzero(status == FringeStatus.VISIBLE)
-    first = 0
-    for own, fit in _fitted(intensity[rows], wavenumber, nominal[rows], start[rows], processing):
-        part = rows[first : first + fit.depth.size]
-        first += part.size
+    fits = _fitted(intensity[rows], wavenumber, nominal[rows], start[rows], processing)
+    for chunk, own, fit in fits:
+        part = rows[chunk]
         spectra = intensity[part]
         left = leftover(spectra, wavenumber, fit)
         noise = np.sqrt(left.noise)
@@ -110,32 +110,27 @@ def _expected(intensity: Array, wavenumber: Array, nominal: Array, processing: P
     """Return where fringes are expected, (D,), µm: of fft, which is told nothing, at the peak."""
     if processing.estimator != "fft":
         return expected_depths(intensity, wavenumber, nominal, processing)
-    by_peak = processing.model_copy(update={"depth": "peak"})
-    peaks = expected_depths(intensity, wavenumber, nominal, by_peak)
-    return np.where(np.isfinite(nominal), nominal, peaks)
+    return np.where(np.isfinite(nominal), nominal, peak_depths(intensity, wavenumber, processing))
 
 
 def _fitted(
     intensity: Array, wavenumber: Array, nominal: Array, start: Array, processing: Processing
-) -> Iterator[tuple[Fit | Phases, Fit]]:
-    """Return the phases, some spectra at a time, each with the reference's fit."""
-    asked, first = reference(processing), 0
+) -> Iterator[tuple[slice, Fit | Phases, Fit]]:
+    """Return which spectra, their phases and the reference's fit, some spectra at a time."""
+    asked = reference(processing)
     if processing.estimator == "sinusoid":
-        for own in fit_sinusoid(intensity, wavenumber, start, processing):
-            part = slice(first, first + own.depth.size)
-            first = part.stop
+        for part, own in fit_sinusoid(intensity, wavenumber, start, processing):
             if asked == processing:
-                yield own, own
+                yield part, own, own
             else:
-                yield own, next(fit_sinusoid(intensity[part], wavenumber, own.depth, asked))
+                _, fit = next(fit_sinusoid(intensity[part], wavenumber, own.depth, asked))
+                yield part, own, fit
     elif start.size:
         found = phases(intensity, wavenumber, nominal, processing)
         near = start if processing.estimator == "fft" else found.depth
         near = np.where(near > 0, near, start)
-        for fit in fit_sinusoid(intensity, wavenumber, near, asked):
-            part = slice(first, first + fit.depth.size)
-            first = part.stop
-            yield Phases(found.phase[part], found.depth[part]), fit
+        for part, fit in fit_sinusoid(intensity, wavenumber, near, asked):
+            yield part, Phases(found.phase[part], found.depth[part]), fit
 
 
 def _drawn(

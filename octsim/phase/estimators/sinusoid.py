@@ -91,13 +91,13 @@ class Fit(NamedTuple):
 def sinusoid(intensity: Array, wavenumber: Array, depth: Array, processing: Processing) -> Phases:
     """Fit a sinusoid on polynomials, and give its phase and depth; see `fit_sinusoid`."""
     fits = fit_sinusoid(intensity, wavenumber, depth, processing)
-    phases, depths = zip(*((fit.phase, fit.depth) for fit in fits), strict=True)
+    phases, depths = zip(*((fit.phase, fit.depth) for _, fit in fits), strict=True)
     return Phases(np.concatenate(phases), np.concatenate(depths))
 
 
 def fit_sinusoid(
     intensity: Array, wavenumber: Array, depth: Array, processing: Processing
-) -> Iterator[Fit]:
+) -> Iterator[tuple[slice, Fit]]:
     r"""Fit a sinusoid on polynomials by weighted least squares.
 
     .. math:: I(k) = \sum_{j \le p} o_j x^j
@@ -121,8 +121,10 @@ def fit_sinusoid(
 
     Yields
     ------
-    Fit
-        Of `CHUNK` spectra each, in their order.
+    part : slice
+        Which spectra: up to `CHUNK` at a time, in their order.
+    fit : Fit
+        Theirs.
 
     Raises
     ------
@@ -135,7 +137,7 @@ def fit_sinusoid(
         envelope = _common(intensity, wavenumber, depth, processing)
     for begin in range(0, depth.size, CHUNK):
         part = slice(begin, begin + CHUNK)
-        yield _fit(intensity[part], wavenumber, depth[part], options, variance, envelope)
+        yield part, _fit(intensity[part], wavenumber, depth[part], options, variance, envelope)
 
 
 def _polynomials(wavenumber: Array, options: Options) -> Envelope:

@@ -166,10 +166,8 @@ def fringe_at(
     intensity = np.ascontiguousarray(intensity)
     status, visibility = unusable(intensity, wavenumber, depth), np.full(len(intensity), np.nan)
     rows = np.flatnonzero(status == FringeStatus.VISIBLE)
-    first = 0
-    for fit in fit_sinusoid(intensity[rows], wavenumber, depth[rows], _HELD):
-        part = rows[first : first + len(fit.depth)]
-        first += part.size
+    for chunk, fit in fit_sinusoid(intensity[rows], wavenumber, depth[rows], _HELD):
+        part = rows[chunk]
         found = seen(intensity[part], fit, leftover(intensity[part], wavenumber, fit))
         amplitude = np.abs(fit.amplitude[:, 0])
         least = np.broadcast_to(error, status.shape)[part] * intensity[part].max(axis=1)
