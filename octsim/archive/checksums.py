@@ -1,9 +1,7 @@
 """The file SHA256SUMS: what every other file's digest is, as `sha256sum -c` reads it."""
 
-import hashlib
 import re
 from collections.abc import Mapping
-from typing import IO
 
 from octsim.archive.safe_names import require_plain
 from octsim.base.errors import ArchiveError
@@ -14,12 +12,6 @@ LARGEST = 4_000_000
 DAMAGED = "damaged"
 """Stands for the digest of what is not whole, or no plain file."""
 _LINE = re.compile(r"([0-9a-f]{64})  ([^\n]+)")
-
-
-def digest(stream: IO[bytes]) -> str:
-    """Return the SHA-256 of what a stream holds, in lower-case hexadecimal."""
-    # a stream that is open for bytes can read into a buffer, which its type does not say
-    return hashlib.file_digest(stream, "sha256").hexdigest()  # type: ignore[arg-type]
 
 
 def format_sums(digests: Mapping[str, str]) -> bytes:

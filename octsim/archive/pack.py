@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from octsim.archive.checksums import SUMS, digest, format_sums
+from octsim.archive.checksums import SUMS, format_sums
 from octsim.archive.contents import CONFIG, METADATA, Item, items_of, omissions
 from octsim.archive.readme import readme
 from octsim.archive.ro_crate import metadata, unanswered
@@ -17,7 +17,7 @@ from octsim.archive.run_folder import Run, run_in
 from octsim.archive.verify import problems_in_zip
 from octsim.archive.zip_file import Member, write
 from octsim.base.errors import ArchiveError, DatasetError
-from octsim.base.files import reason, whole
+from octsim.base.files import digest, reason, whole
 from octsim.config.models import Config
 from octsim.datasets.files import opened
 

@@ -10,10 +10,10 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import IO
 
-from octsim.archive.checksums import DAMAGED, LARGEST, SUMS, differences, digest, parse_sums
+from octsim.archive.checksums import DAMAGED, LARGEST, SUMS, differences, parse_sums
 from octsim.archive.zip_file import digests_in, is_canonical, safe_zip
 from octsim.base.errors import ArchiveError, FileError
-from octsim.base.files import reason, require_empty
+from octsim.base.files import digest, reason, require_empty
 
 
 def problems(path: Path) -> list[str]:

@@ -15,9 +15,10 @@ from functools import partial
 from operator import attrgetter
 from typing import IO, NamedTuple
 
-from octsim.archive.checksums import DAMAGED, LARGEST, SUMS, digest
+from octsim.archive.checksums import DAMAGED, LARGEST, SUMS
 from octsim.archive.safe_names import require_plain, shown
 from octsim.base.errors import ArchiveError
+from octsim.base.files import digest
 
 _DATE = (1980, 1, 1, 0, 0, 0)
 _MODE = (stat.S_IFREG | 0o644) << 16

@@ -7,6 +7,7 @@ import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import IO
 
 from octsim.base.errors import FileError
 
@@ -62,10 +63,16 @@ def require_empty(folder: Path) -> None:
         )
 
 
+def digest(stream: IO[bytes]) -> str:
+    """Return the SHA-256 of what a stream holds, in lower-case hexadecimal."""
+    # a stream that is open for bytes can read into a buffer, which its type does not say
+    return hashlib.file_digest(stream, "sha256").hexdigest()  # type: ignore[arg-type]
+
+
 def digest_of(path: Path) -> str:
     """Return the SHA-256 of what a file holds, in lower-case hexadecimal."""
     with path.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
+        return digest(stream)
 
 
 @contextmanager
