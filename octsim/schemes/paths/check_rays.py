@@ -15,8 +15,13 @@ from numpy.typing import NDArray
 from octsim.base.records import layout
 from octsim.optics.detector import falloff
 from octsim.schemes.paths.aperture_tiles import Tile, across, fraction
-from octsim.schemes.paths.chebyshev import polynomials
-from octsim.schemes.paths.line_crossings import Cut, TileLine, set_line
+from octsim.schemes.paths.line_crossings import (
+    Cut,
+    TileLine,
+    across_place,
+    returning,
+    set_line,
+)
 
 CHECKS = 40
 """How many there are in a survey."""
@@ -99,21 +104,18 @@ def sees_beside(checks: CheckRays, tile: Tile, part: Tile) -> bool:
 @register_jitable
 def weight_error(checks: CheckRays, cut: Cut, line: TileLine) -> float:
     """Return how far off a tile's polynomials put the falloff of check rays, evened out."""
-    worst, tile = 0.0, cut.tile
+    worst = 0.0
     for i in range(CHECKS):
-        if checks.weight[i] < 0 or not _is_in(checks, i, tile):
+        if checks.weight[i] < 0 or not _is_in(checks, i, cut.tile):
             continue
         xi, y = across(checks.s[i], cut.symmetric), math.sqrt(checks.v[i])
         set_line(cut, xi, line)
-        polynomials((checks.v[i] - tile.v_min) / (tile.v_max - tile.v_min), cut.m, line.u)
-        to_x, to_y, cos, inside = 0.0, 0.0, 0.0, 0.0
+        to_x, to_y, cos = returning(cut, line, y)
+        inside = 0.0
         for b in range(cut.m):
-            to_x += line.x[b] * line.u[b]
-            to_y += line.y[b] * line.u[b]
-            cos += line.cos[b] * line.u[b]
             inside += line.inside[b] * line.u[b]
-        scale = xi * math.sqrt(1 - checks.v[i]) if cut.symmetric else 1.0
-        weight = max(weight_of(to_x * scale, to_y * y, cos, inside, cut.detector_radius), 0.0)
+        to_x, to_y = to_x * across_place(cut, xi, y), to_y * y
+        weight = max(weight_of(to_x, to_y, cos, inside, cut.detector_radius), 0.0)
         # at the rim the falloff may jump: that is the rim's error
         if abs(inside) > 1e-3 * cos * cos or weight == 0:
             worst = max(worst, abs(weight - checks.weight[i]))

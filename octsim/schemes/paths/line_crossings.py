@@ -121,8 +121,8 @@ def set_line(cut: Cut, xi: float, line: TileLine) -> None:
 
 
 @register_jitable(forceinline=True)
-def falloffs(cut: Cut, xi: float, line: TileLine, y: float) -> tuple[float, float]:
-    """Return the falloff at a place on a line, and that from a rougher map."""
+def returning(cut: Cut, line: TileLine, y: float) -> tuple[float, float, float]:
+    """Return where light of a place on a line returns to, as a `Map` has it: x, y and cos θ."""
     tile, m = cut.tile, cut.m
     polynomials((y * y - tile.v_min) / (tile.v_max - tile.v_min), m, line.u)
     to_x, to_y, cos = 0.0, 0.0, 0.0
@@ -130,12 +130,26 @@ def falloffs(cut: Cut, xi: float, line: TileLine, y: float) -> tuple[float, floa
         to_x += line.x[b] * line.u[b]
         to_y += line.y[b] * line.u[b]
         cos += line.cos[b] * line.u[b]
+    return to_x, to_y, cos
+
+
+@register_jitable(forceinline=True)
+def across_place(cut: Cut, xi: float, y: float) -> float:
+    """Return what a `Map`'s x is multiplied by at a place."""
+    return xi * math.sqrt(1 - y * y) if cut.symmetric else 1.0
+
+
+@register_jitable(forceinline=True)
+def falloffs(cut: Cut, xi: float, line: TileLine, y: float) -> tuple[float, float]:
+    """Return the falloff at a place on a line, and that from a rougher map."""
+    m = cut.m
+    to_x, to_y, cos = returning(cut, line, y)
     rough_x, rough_y = 0.0, 0.0
     for b in range(m - LESS_V):
         rough_x += line.rough_x[b] * line.u[b]
         rough_y += line.rough_y[b] * line.u[b]
-    scale_x = xi * math.sqrt(1 - y * y) if cut.symmetric else 1.0
-    scale_x, scale_y = scale_x / (cos * cut.detector_radius), y / (cos * cut.detector_radius)
+    scale_x = across_place(cut, xi, y) / (cos * cut.detector_radius)
+    scale_y = y / (cos * cut.detector_radius)
     return (
         falloff((to_x * scale_x) ** 2, (to_y * scale_y) ** 2),
         falloff((rough_x * scale_x) ** 2, (rough_y * scale_y) ** 2),

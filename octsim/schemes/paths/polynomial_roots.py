@@ -173,7 +173,7 @@ def append_roots(
     n : int
         How many there are.
     binomials : ndarray
-        From `bernstein_tables`.
+        Those of `BernsteinTables`.
     room : ndarray, shape `HALVES`
         Room to work in.
     roots : ndarray
@@ -186,8 +186,7 @@ def append_roots(
     int
         How many are there now.
     """
-    changes = _sign_changes(coefficients, n)
-    if changes == 0:
+    if _sign_changes(coefficients, n) == 0:
         return count
     rounding = _ROUNDED * _largest(coefficients, n)
     room[0, :n] = coefficients[:n]
@@ -196,8 +195,7 @@ def append_roots(
     while top >= 0 and count < roots.size:
         start, depth = starts[top], depths[top]
         width = 0.5**depth
-        if top > 0 or depth > 0:
-            changes = _sign_changes(room[top], n)
+        changes = _sign_changes(room[top], n)
         if changes == 1:
             roots[count] = start + width * _only_root(room[top], n, binomials)
             count += 1
