@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from octsim.base.compiled import compiled
 from octsim.base.records import room
 from octsim.optics.beam import Beam, aim
-from octsim.optics.detector import Acceptance, Detector, falloff
+from octsim.optics.detector import Acceptance, Detector, falloff, rim_margin
 from octsim.optics.scene import Scene
 from octsim.tracing.faces import Faces, faces_at
 from octsim.tracing.follow import FOLLOW_ROOM, Bundle, FollowRoom, bundle_of, follow
@@ -71,14 +71,14 @@ def _sum_cells(
     faces: Faces, detector: Detector, focus: float, code: int, columns: NDArray[np.int64],
     rows: NDArray[np.int64], slopes: Array, finer: int, first: float, step: float, real: Array,
     imaginary: Array, bundle: Bundle, rays: FollowRoom,
-) -> int:  # fmt: skip
-    """Add a path's rays from a grid of midpoints over some cells; return how many are detected."""
+) -> None:  # fmt: skip
+    """Add a path's rays from a grid of midpoints over some cells."""
     face, through = np.empty(LONGEST, np.int64), np.empty(LONGEST, np.bool_)
     meetings = steps_of(faces, code, face, through)
     beam = Beam(np.empty(LANES), np.empty(LANES), np.empty(LANES), np.ones(LANES), np.arange(LANES))
     areas, across, along = np.empty(LANES), np.empty(LANES), np.empty(LANES)
     width, height = 1 / (COLUMNS * finer), 1 / (ROWS * finer)
-    count, detected = 0, 0
+    count = 0
     total = columns.size * finer * finer
     for number in range(total):
         cell, place = number // (finer * finer), number % (finer * finer)
@@ -103,7 +103,6 @@ def _sum_cells(
             weight = falloff((bundle.x[i] * scale) ** 2, (bundle.y[i] * scale) ** 2)
             if not weight * part > 0:
                 continue
-            detected += 1
             weight *= part * bundle.amplitude[i] * areas[i]
             path = bundle.optical_path_length[i]
             cos, sin = weight * math.cos(first * path), weight * math.sin(first * path)
@@ -113,7 +112,6 @@ def _sum_cells(
                 imaginary[k] += sin
                 cos, sin = cos * turn - sin * turn_i, cos * turn_i + sin * turn
         count = 0
-    return detected
 
 
 def _grown(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -164,8 +162,7 @@ def parts_of(faces: Faces, detector: Detector, focus: float, max_intersections: 
         vx, vy = numbers[AT_VX], numbers[AT_VY]
         cos = np.sqrt(np.maximum(1 - vx * vx - vy * vy, 0.0))
         x, to_y = numbers[AT_X] * cos, numbers[AT_Y] * cos
-        at_x, at_y = x + detector.focus_distance * vx, to_y + detector.focus_distance * vy
-        inside = cos * cos - (at_x**2 + at_y**2) / detector.objective_radius**2
+        inside = rim_margin(detector, x, to_y, vx, vy, cos)
         columns, row = np.divmod(labels[0], rows.size)
         for code in np.unique(labels[1]):
             of = labels[1] == code
@@ -218,19 +215,19 @@ def dense_field(
     faces = faces_at(scene, middle)
     first, step = float(wavenumber[0]), float(wavenumber[1] - wavenumber[0])
 
-    def by_grid(part: _Part, finer: int) -> tuple[Any, int]:
+    def by_grid(part: _Part, finer: int) -> Any:
         real, imaginary = np.zeros(wavenumber.size), np.zeros(wavenumber.size)
-        detected = _sum_cells(
+        _sum_cells(
             faces, detector, focus, part.code, part.columns, part.rows, part.slopes, finer, first,
             step, real, imaginary, room(bundle_of(LANES)), room(FOLLOW_ROOM),
         )  # fmt: skip
-        return real + 1j * imaginary, detected
+        return real + 1j * imaginary
 
     parts = parts_of(faces, detector, focus, max_intersections)
     rough = [by_grid(part, _finer(part, 100.0)) for part in parts]
-    scale = max(np.abs(sum(field for field, _ in rough)).max(), 1e-300) if rough else 1e-300
+    scale = max(np.abs(sum(rough)).max(), 1e-300) if rough else 1e-300
     total, error = np.zeros(wavenumber.size, complex), 0.0
-    for part, (field, _) in zip(parts, rough, strict=True):
+    for part, field in zip(parts, rough, strict=True):
         allowed = 0.02 * accuracy * scale
         size = max(np.abs(field).max(), _faintest(part))
         side = 40.0
@@ -238,8 +235,8 @@ def dense_field(
             side = min(max(side, (2 * size / allowed) ** 0.4), _FINEST)
             fine = _finer(part, side)
             less = max(1, round(0.71 * fine))
-            better = by_grid(part, fine)[0]
-            off = float(np.abs(better - by_grid(part, less)[0]).max())
+            better = by_grid(part, fine)
+            off = float(np.abs(better - by_grid(part, less)).max())
             if off <= allowed or side >= _FINEST or part.rows.size * fine * fine > _RAYS:
                 break
             side *= 1.7
