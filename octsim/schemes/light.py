@@ -1,4 +1,4 @@
-"""The light of one point: weighted rays whose fields add up, and how sure their sum is."""
+"""The light of one point, as rays whose fields add up or as a field, and how sure it is."""
 
 from collections.abc import Callable, Mapping
 from enum import IntEnum
@@ -63,6 +63,36 @@ class Light(NamedTuple):
     status: AccuracyStatus
     outcomes: NDArray[np.int64] | None = None
     """How often each `octsim.optics.detector.Outcome` came about, (7,), where rays are counted."""
+
+
+class Waves(NamedTuple):
+    r"""The field that the detector collects, at N nodes over the band.
+
+    It is smooth in k, as the phase :math:`e^{i k \Lambda_0}` of the far side's light is taken out:
+    the Chebyshev series through the nodes gives it anywhere in the band.
+    """
+
+    wavenumber: NDArray[np.float64]
+    """Chebyshev nodes of the first kind, increasing, (N,), 1/µm."""
+    values: NDArray[np.complex128]
+    """Field without that phase, (2, N): of light polarised across the cylinder, and along it; 1 is
+    a perfect mirror in the focus."""
+    terms: NDArray[np.complex128]
+    """The parts of it in `TERMS`, (3, 2, N); what they leave is the rest."""
+    optical_path_length: float
+    """Λ₀, µm."""
+    azimuth: float
+    """Of the cylinder: angle from the y axis to its axis, rad."""
+    error: float
+    """Estimate of the error of the field, the largest over band and polarisations."""
+    order: int
+    """Largest order of the partial waves."""
+    status: AccuracyStatus
+
+
+TERMS = ("plane", "near_side", "far_side")
+"""Parts of a `Waves` field: reflection off the plane, and off the cylinder's near side and far side
+(the Debye series' p = 0 and p = 2)."""
 
 
 class Field(NamedTuple):
