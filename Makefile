@@ -8,7 +8,7 @@
 # make docs                                   the parts of docs/ that are made
 # make bench                                  speed, as ratios within one run
 # make bench-sweeps                           what a grid of 1000 combinations takes, minutes
-# make bench-peers                            the same beside other ray tracers, optional
+# make bench-peers                            beside other codes and methods, optional, minutes
 # make slurm                                  installs what runs on a cluster need besides
 # make test-slurm                             the same results on a private Slurm of one node
 # make bench-slurm                            what Slurm adds to each job
@@ -18,7 +18,7 @@ PYTHON ?= python3
 CORES ?= 2
 CONFIG ?= config/default.yaml
 BIN = .venv/bin
-PEERS_PIP = .venv-peers/bin/python -m pip --disable-pip-version-check --quiet
+PEERS_PIP = .venv-peers/$(1)/bin/python -m pip --disable-pip-version-check --quiet
 PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 # what a user's environment tells other programs of Python's (octsim/base/surroundings.py)
@@ -112,7 +112,7 @@ lock: .venv/bin/python
 	$(COMPILE) pyproject.toml $(RUN) --group build -o requirements.lock
 	$(COMPILE) pyproject.toml $(RUN) --extra stability --group dev -c requirements.lock -o requirements-dev.lock
 	$(COMPILE) pyproject.toml $(RUN) --extra slurm --group build -c requirements.lock -o requirements-slurm.lock
-	$(COMPILE) benchmarks/peers.in -o benchmarks/peers.lock
+	for name in rays waves cycles; do $(COMPILE) benchmarks/peers/$$name.in -o benchmarks/peers/$$name.lock; done
 
 bench: .venv/run
 	$(BIN)/python benchmarks/bench.py
@@ -120,13 +120,19 @@ bench: .venv/run
 bench-sweeps: .venv/run
 	$(BIN)/python benchmarks/large.py
 
-bench-peers: .venv-peers/run
-	.venv-peers/bin/python benchmarks/peers.py
+bench-peers: .venv-peers/rays/run .venv-peers/waves/run .venv-peers/cycles/run
+	OPENBLAS_NUM_THREADS=1 PYTHONPATH=benchmarks .venv-peers/rays/bin/python -m peers
 
-.venv-peers/run: requirements.lock benchmarks/peers.lock pyproject.toml
-	$(PYTHON) -m venv .venv-peers
-	$(PEERS_PIP) install --require-hashes -r requirements.lock -r benchmarks/peers.lock
-	$(PEERS_PIP) install --no-deps --no-build-isolation -e .
+# Peers hold numpy and scipy at versions of their own. One that can't be installed is named by the page.
+.venv-peers/rays/run: requirements.lock benchmarks/peers/rays.lock pyproject.toml
+	$(PYTHON) -m venv .venv-peers/rays
+	$(call PEERS_PIP,rays) install --require-hashes -r requirements.lock -r benchmarks/peers/rays.lock
+	$(call PEERS_PIP,rays) install --no-deps --no-build-isolation -e .
+	touch $@
+
+.venv-peers/%/run: benchmarks/peers/%.lock
+	$(PYTHON) -m venv .venv-peers/$*
+	-$(call PEERS_PIP,$*) install --require-hashes -r $<
 	touch $@
 
 kills: .venv/dev

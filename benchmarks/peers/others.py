@@ -1,0 +1,48 @@
+"""Scripts of peers that need a Python of their own, and marks in the page."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).parent
+ROOT = HERE.parents[1]
+DEBIAN = Path("/usr/bin/python3")
+"""The Python that Debian's packages are for, Meep among them."""
+
+
+class LeftOutError(RuntimeError):
+    """A peer could not be had or did not do it; says why, in one line."""
+
+
+def environment(name: str) -> Path:
+    """Return the Python of one of the environments that `make bench-peers` makes."""
+    return ROOT / ".venv-peers" / name / "bin" / "python"
+
+
+def asked(python: Path, script: str, job: object) -> Any:
+    """Run a script beside this one on a job, both as JSON; raise LeftOutError if it fails."""
+    if not python.exists():
+        raise LeftOutError(f"{python} does not exist")
+    known = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
+    done = subprocess.run(
+        [python, HERE / script], input=json.dumps(job), capture_output=True, text=True, env=known
+    )
+    for line in done.stdout.splitlines():
+        if line.startswith("RESULT "):
+            return json.loads(line.removeprefix("RESULT "))
+    raise LeftOutError((done.stderr.strip() or "it said nothing").splitlines()[-1])
+
+
+def table(head: list[str], rows: list[list[str]]) -> str:
+    """Return a table of Markdown."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+
+
+def put(page: str, name: str, text: str) -> str:
+    """Return a page with what is between the marks of a name replaced."""
+    begin, end = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
+    before, rest = page.split(begin)
+    return f"{before}{begin}\n{text}\n{end}{rest.split(end)[1]}"
