@@ -10,7 +10,7 @@ peer that can't be had is named there with the reason.
 import sys
 from collections.abc import Callable
 
-from peers import chances, claim, cycles, fdtd, partial_waves, ray_tracers, speed_ups
+from peers import blender, chances, claim, fdtd, partial_waves, ray_tracers, speed_ups
 from peers.others import ROOT, LeftOutError, put
 
 PAGE = ROOT / "docs" / "peers.md"
@@ -18,7 +18,7 @@ SECTIONS: dict[str, Callable[[], str]] = {
     "claim": claim.section,
     "fdtd": fdtd.section,
     "partial waves": partial_waves.section,
-    "cycles": cycles.section,
+    "cycles": blender.section,
     "chances": chances.section,
     "speed-ups": speed_ups.section,
     "ray tracers": ray_tracers.section,

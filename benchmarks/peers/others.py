@@ -26,12 +26,18 @@ def asked(python: Path, script: str, job: object) -> Any:
     if not python.exists():
         raise LeftOutError(f"{python} does not exist")
     known = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
+    # -P: a peer's own modules must not be taken for those that lie beside the script
     done = subprocess.run(
-        [python, HERE / script], input=json.dumps(job), capture_output=True, text=True, env=known
+        [python, "-P", HERE / script],
+        input=json.dumps(job),
+        capture_output=True,
+        text=True,
+        env=known,
     )
-    for line in done.stdout.splitlines():
-        if line.startswith("RESULT "):
-            return json.loads(line.removeprefix("RESULT "))
+    # a peer's own messages can stand before it on the line
+    _, mark, answer = done.stdout.partition("RESULT ")
+    if mark:
+        return json.JSONDecoder().raw_decode(answer)[0]
     raise LeftOutError((done.stderr.strip() or "it said nothing").splitlines()[-1])
 
 
