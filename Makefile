@@ -112,7 +112,7 @@ lock: .venv/bin/python
 	$(COMPILE) pyproject.toml $(RUN) --group build -o requirements.lock
 	$(COMPILE) pyproject.toml $(RUN) --extra stability --group dev -c requirements.lock -o requirements-dev.lock
 	$(COMPILE) pyproject.toml $(RUN) --extra slurm --group build -c requirements.lock -o requirements-slurm.lock
-	for name in rays waves cycles; do $(COMPILE) benchmarks/peers/$$name.in -o benchmarks/peers/$$name.lock; done
+	for name in rays waves cycles; do $(COMPILE) benchmarks/peers/$$name.in -o benchmarks/peers/$$name.lock || exit; done
 
 bench: .venv/run
 	$(BIN)/python benchmarks/bench.py
@@ -132,8 +132,7 @@ bench-peers: .venv-peers/rays/run .venv-peers/waves/run .venv-peers/cycles/run
 
 .venv-peers/%/run: benchmarks/peers/%.lock
 	$(PYTHON) -m venv .venv-peers/$*
-	-$(call PEERS_PIP,$*) install --require-hashes -r $<
-	touch $@
+	-$(call PEERS_PIP,$*) install --require-hashes -r $< && touch $@
 
 kills: .venv/dev
 	OCTSIM_KILLS=30 $(BIN)/pytest -n 2 tests/workflow/test_kill.py tests/instrument/test_point_store.py -k killed

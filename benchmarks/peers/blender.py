@@ -44,5 +44,6 @@ def section() -> str:
     ]  # fmt: skip
     return (
         f"Blender {found['version']}. By octsim's own formulas {mean:.5f} ± {error:.5f} returns "
-        f"({OWN_RUNS * OWN_PATHS:,} random paths of `walk.py`, {rate / 1e3:.3g} thousand a second).\n\n{table(head, rows)}"
+        f"({OWN_RUNS * OWN_PATHS:,} random paths of `walk.py`, {rate / 1e3:,.0f} thousand a "
+        f"second).\n\n{table(head, rows)}"
     )
