@@ -141,6 +141,14 @@ def by_accuracy(config: Config, accuracy: float, **tracing: int) -> Config:
     return changed(config, {"tracing": asked | tracing})
 
 
+def by_light_paths(config: Config) -> Config:
+    """Return a config whose light is that of the light paths, at their preset standard."""
+    tracing = config.tracing.model_copy(
+        update={"scheme": LIGHT_PATHS.name, **LIGHT_PATHS.presets["standard"]}
+    )
+    return config.model_copy(update={"tracing": tracing})
+
+
 def reference(config: Config) -> Config:
     """Return the config whose results errors are measured from."""
     most = max(15, config.tracing.max_intersections)

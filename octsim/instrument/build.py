@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from octsim.optics.detector import Detector, fibre_detector
 from octsim.optics.materials import Constant
+from octsim.optics.pupil import FibrePupil, Pupil
 from octsim.optics.scene import NEURON_ON_GLASS, Scene, neuron_on_glass
 from octsim.schemes.light import Optics
 
@@ -37,8 +38,27 @@ def surface_names(config: Config) -> tuple[str, ...]:  # noqa: ARG001
     return NEURON_ON_GLASS
 
 
+def pupil_of(config: Config) -> Pupil:
+    """Return what weighs the light over the pupil: the fibre's mode, seen at the magnification."""
+    return FibrePupil(5.0, config.objective.magnification)
+
+
+def most_nodes(config: Config) -> int:
+    """Return the most wavenumbers at which the field of any diameter of the sweep is solved."""
+    # here, as rays need none of it
+    from octsim.schemes.fullwave.cylinder_on_plane import cylinder_on_plane
+    from octsim.schemes.fullwave.orders import most_nodes
+
+    largest = cylinder_on_plane(scene_of(config, config.sweep.diameters.stop))
+    return most_nodes(largest, optics_of(config).band, config.tracing.accuracy)
+
+
 def optics_of(config: Config) -> Optics:
     """Return what every scheme works with."""
     k = config.spectrum.wavenumbers()
     band = float(k[0]), float(k[-1])
-    return Optics(detector_of(config), band, config.tracing.max_intersections)
+    objective = config.objective
+    return Optics(
+        detector_of(config), band, config.tracing.max_intersections,
+        objective.numerical_aperture, pupil_of(config),
+    )  # fmt: skip

@@ -14,14 +14,14 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from octsim.schemes.cost import PointCost, of_paths, of_rays
+from octsim.schemes.cost import PointCost, of_paths, of_rays, of_waves
 
 if TYPE_CHECKING:
     # the config reads this table, and needs no compiler for it
     import numpy as np
     from numpy.typing import NDArray
 
-    from octsim.schemes.light import Field, Light, LightAt, Optics, Options
+    from octsim.schemes.light import Field, Found, LightAt, Optics, Options
 
 
 @dataclass(frozen=True)
@@ -36,8 +36,10 @@ class Scheme:
     """Keys of the section ``tracing`` that its light depends on, besides the instrument's."""
     effort: str
     """The one of them that decides what a point takes."""
-    cost: Callable[[Options], PointCost]
-    """Returns what a point takes, typically; the same on all machines."""
+    cost: Callable[[Options, float], PointCost]
+    """Returns what a point of a diameter (µm) takes, typically; the same on all machines."""
+    light: str = "rays"
+    """What its light is: rays, each with its field, or waves, a field without any."""
     counts_rays: bool = False
     """Whether its light is a number of rays, each of which is counted."""
     controls_error: bool = False
@@ -68,9 +70,11 @@ class Scheme:
         found: LightAt = self._functions.tracer(optics, options)
         return found
 
-    def field(self, light: Light, wavenumber: NDArray[np.float64], options: Options) -> Field:
+    def field(
+        self, light: Found, wavenumber: NDArray[np.float64], optics: Optics, options: Options
+    ) -> Field:
         """Return the field of some light at evenly spaced wavenumbers (K,), 1/µm."""
-        found: Field = self._functions.field(light, wavenumber, options)
+        found: Field = self._functions.field(light, wavenumber, optics, options)
         return found
 
     def rate_name(self, options: Options) -> str:
@@ -106,7 +110,19 @@ LIGHT_PATHS = Scheme(
 )  # fmt: skip
 """Each light path integrated over the aperture, to a stated accuracy."""
 
-SCHEMES: Mapping[str, Scheme] = {row.name: row for row in (COUNTED_RAYS, LIGHT_PATHS)}
+FULL_WAVE = Scheme(
+    name="fullwave",
+    module="octsim.schemes.fullwave.scheme",
+    options=("accuracy",),
+    effort="accuracy",
+    cost=of_waves,
+    light="waves",
+    controls_error=True,
+    presets={"exact": {"accuracy": 1e-4}},
+)
+"""Maxwell's equations solved in partial waves about the cylinder, to a stated accuracy."""
+
+SCHEMES: Mapping[str, Scheme] = {row.name: row for row in (COUNTED_RAYS, LIGHT_PATHS, FULL_WAVE)}
 """Every scheme by its name; the first is the thesis's."""
 PRESETS: Mapping[str, Mapping[str, Any]] = {
     name: {"scheme": row.name, **options}

@@ -140,7 +140,7 @@ def _true_slopes(
 ) -> dict[str, Any]:
     """Return the slopes of the light's own phase, and of its mean path."""
     places = zip(diameter.tolist(), foci.tolist(), strict=True)
-    lights = list(each(lambda place: instrument.light(*place), places, threads))
+    lights = list(each(lambda place: instrument.rays(*place), places, threads))
     phase, mean = path_slopes(lights, diameter, middle(instrument.wavenumber))
     return {"path_phase_slope": ("diameter", phase), "mean_path_slope": ("diameter", mean)}
 
