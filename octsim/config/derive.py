@@ -19,7 +19,10 @@ def part_of(data: Mapping[str, Any], key: str) -> Any:
     """Return what stands under a dotted key of a config's plain data, or None."""
     part: Any = data
     for name in key.split("."):
-        part = part.get(name) if isinstance(part, Mapping) else None
+        if isinstance(part, list) and name.isdigit() and int(name) < len(part):
+            part = part[int(name)]
+        else:
+            part = part.get(name) if isinstance(part, Mapping) else None
     return part
 
 
@@ -60,14 +63,19 @@ def nested(key: str, value: object) -> dict[str, Any]:
 
 
 def merge(base: Mapping[str, Any], overlay: Mapping[str, Any]) -> dict[str, Any]:
-    """Lay one mapping over another: mappings merge deeply, everything else replaces."""
-    merged = dict(base)
-    for key, value in overlay.items():
-        below = merged.get(key)
-        if isinstance(below, Mapping) and isinstance(value, Mapping):
-            value = merge(below, value)
-        merged[key] = value
-    return merged
+    """Lay one mapping over another: mappings merge deeply, everything else replaces.
+
+    Of a list, a mapping from places in it, as text, replaces entries, or parts of them.
+    """
+    return {**base, **{key: _laid(base.get(key), value) for key, value in overlay.items()}}
+
+
+def _laid(below: Any, value: Any) -> Any:
+    if not isinstance(value, Mapping):
+        return value
+    if isinstance(below, list) and value and value.keys() <= {str(i) for i in range(len(below))}:
+        return [_laid(part, value.get(str(place), part)) for place, part in enumerate(below)]
+    return merge(below, value) if isinstance(below, Mapping) else value
 
 
 def overlaid(base: Mapping[str, Any], overlay: Mapping[str, Any]) -> dict[str, Any]:

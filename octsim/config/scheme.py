@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from octsim.config.models import Config
-from octsim.schemes.table import SCHEMES, Scheme
+from octsim.schemes.table import SCHEMES, Ability, Scheme
 
 
 def scheme_of(config: Config) -> Scheme:
@@ -19,7 +19,9 @@ def options_of(config: Config) -> Mapping[str, Any]:
 
 def light_keys(config: Config) -> tuple[str, ...]:
     """Return the dotted keys that the light of a point of a plain config depends on."""
+    scheme = scheme_of(config)
+    polarised = ("polarisation",) if Ability.POLARISATION in scheme.honours else ()
     return (
-        "scene", "objective", "detector", "tracing.scheme", "tracing.max_intersections",
-        *scheme_of(config).keys,
+        "scene", "objective", *polarised, "detector", "tracing.scheme", "tracing.max_intersections",
+        *scheme.keys,
     )  # fmt: skip

@@ -11,6 +11,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from enum import Enum
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,25 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from octsim.schemes.light import Field, Light, LightAt, Optics, Options
+
+
+class Ability(Enum):
+    """What not every scheme can do of what a config can ask for; its value is a scheme that can't.
+
+    Every scheme does the thesis's: a cylinder on the optical axis, a gap above a slide.
+    """
+
+    PUPIL = "does not weigh the pupil"
+    APLANATIC = "has no apodisation"
+    POLARISATION = "has light of one kind, the thesis's unpolarised one"
+    ATTENUATION = "has no attenuation"
+    LAYERS = "has two layers, of two media"
+    NO_CYLINDER = "needs a cylinder"
+    CYLINDERS = "has one cylinder"
+    OFF_AXIS = "has the cylinder on the optical axis"
+    AZIMUTH = "has the cylinder along y"
+    ELEVATION = "has the cylinder level"
+    SHELLS = "has a cylinder without shells"
 
 
 @dataclass(frozen=True)
@@ -44,6 +64,10 @@ class Scheme:
     """Whether it reaches ``tracing.accuracy``, in one band, or says that it does not."""
     steepest: float = math.inf
     """Numerical aperture over the water's index above which it can miss light."""
+    honours: frozenset[Ability] = frozenset()
+    """What it can do beyond the thesis's instrument."""
+    mode_field_diameter: float | None = None
+    """Of the fibre whose mode fills the pupil where a config gives none, µm; else it is even."""
     presets: Mapping[str, Mapping[str, float]] = dataclasses.field(default_factory=dict)
     """Options that a name stands for."""
 
@@ -106,7 +130,25 @@ LIGHT_PATHS = Scheme(
 )  # fmt: skip
 """Each light path integrated over the aperture, to a stated accuracy."""
 
-SCHEMES: Mapping[str, Scheme] = {row.name: row for row in (COUNTED_RAYS, LIGHT_PATHS)}
+FULL_WAVE = Scheme(
+    name="fullwave",
+    module="octsim.schemes.fullwave.scheme",
+    options=("accuracy",),
+    effort="accuracy",
+    cost=of_paths,
+    controls_error=True,
+    honours=frozenset(
+        {
+            Ability.PUPIL, Ability.APLANATIC, Ability.POLARISATION, Ability.OFF_AXIS,
+            Ability.AZIMUTH,
+        }
+    ),
+    mode_field_diameter=5.0,
+    presets={"exact": {"accuracy": 1e-4}},
+)  # fmt: skip
+"""Maxwell's equations solved to a stated accuracy."""
+
+SCHEMES: Mapping[str, Scheme] = {row.name: row for row in (COUNTED_RAYS, LIGHT_PATHS, FULL_WAVE)}
 """Every scheme by its name; the first is the thesis's."""
 PRESETS: Mapping[str, Mapping[str, Any]] = {
     name: {"scheme": row.name, **options}
