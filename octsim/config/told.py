@@ -1,13 +1,12 @@
 """What a run is told at its start: the scene, and conventions that a reader may take otherwise."""
 
 import math
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 from octsim.config.grid import combinations
 from octsim.config.models import Config, SceneConfig
 from octsim.config.scene import CylinderConfig, Layer
-from octsim.schemes.table import SCHEMES, Ability
+from octsim.schemes.table import SCHEMES
 
 _HANDED = {"left": ("(1, +i)/√2", "positive", "right"), "right": ("(1, −i)/√2", "negative", "left")}
 
@@ -24,25 +23,6 @@ def told(config: Config) -> list[str]:
         among = f" (the first of a grid over {', '.join(varied)})" if varied else ""
         said.insert(0, f"scene: {_scene(first.scene)}{among}")
     return said
-
-
-def unsaid(config: Config, asked: Mapping[str, Any]) -> list[str]:
-    """Say, a line each, where ``none`` is given and the scheme's own way is something.
-
-    Parameters
-    ----------
-    config : Config
-        A checked config.
-    asked : mapping
-        Dotted keys that a user asks for, and their values.
-    """
-    honours = SCHEMES[config.tracing.scheme].honours
-    if asked.get("objective.apodisation") != "none" or Ability.APLANATIC not in honours:
-        return []
-    return [
-        "objective.apodisation: none is read as not given, and tracing.scheme: "
-        f"{config.tracing.scheme} is aplanatic of itself; leave it out"
-    ]
 
 
 def _conventions(config: Config) -> Iterator[str]:
