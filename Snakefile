@@ -33,6 +33,7 @@ from octsim.cli.job_server import PYTHON, SOCKET, start
 from octsim.config.derive import parts_of
 from octsim.config.load import load_and_tell
 from octsim.config.models import Config
+from octsim.config.told import told
 from octsim.datasets.catalog import CATALOG, TARGETS, Stage, jobs
 from octsim.datasets.code import code_of, figures_code
 from octsim.datasets.gallery import drawn_with, run_figures
@@ -55,6 +56,8 @@ except OctsimError as error:
 if run.run == Config().run and run != Config():
     remark = "run: not given, so this goes to results/thesis in the place of the thesis itself"
     print(f"octsim: warning: {remark}", file=sys.stderr)
+for line in told(run):
+    print(f"octsim: {line}", file=sys.stderr)
 for remark in said:
     print(f"octsim: warning: {remark}", file=sys.stderr)
 

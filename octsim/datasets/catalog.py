@@ -211,7 +211,7 @@ _RUN = (
     Stage(
         "phase_slope", "octsim.stages.phase_slope:phase_slope",
         "Differentiate their phase over the diameter",
-        reads=("processing", "scene.refractive_index.neuron"), after=("fourier",),
+        reads=("processing", "scene"), after=("fourier",),
         job="phase_slope", summary="octsim.stages.phase_slope:summary",
         per_sample=(1e-7, 12.0),  # magnitude, phase and slopes of half as many components
         figures=(

@@ -65,7 +65,7 @@ class Instrument:
 
     def nominal_depth(self, diameter: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the optical depth n_neuron · d of neurons' far sides, µm, for diameters, µm."""
-        return self.config.scene.refractive_index.neuron * diameter
+        return self.config.scene.swept_index * diameter
 
     def light(self, diameter: float, focus: float) -> Found:
         """Return the detected light of a diameter at a focus, both µm."""

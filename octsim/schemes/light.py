@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.optics.detector import Detector
+from octsim.optics.polarisation import Polarisation
 from octsim.optics.pupil import Pupil
 from octsim.optics.scene import Scene
 
@@ -124,6 +125,8 @@ class Optics(NamedTuple):
     """Of the objective."""
     pupil: Pupil
     """What weighs the light over it."""
+    polarisation: Polarisation
+    """What goes in, and what is detected of it."""
 
 
 Options = Mapping[str, Any]

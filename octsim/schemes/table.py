@@ -11,6 +11,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from enum import Enum
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,25 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from octsim.schemes.light import Field, Found, LightAt, Optics, Options
+
+
+class Ability(Enum):
+    """What not every scheme can do of what a config can ask for; its value is a scheme that can't.
+
+    Every scheme does the thesis's: a cylinder on the optical axis, a gap above a slide.
+    """
+
+    PUPIL = "does not weigh the pupil"
+    APLANATIC = "has no apodisation"
+    POLARISATION = "has light of one kind, the thesis's unpolarised one"
+    ATTENUATION = "has no attenuation"
+    LAYERS = "has two layers, of two media"
+    NO_CYLINDER = "needs a cylinder"
+    CYLINDERS = "has one cylinder"
+    OFF_AXIS = "has the cylinder on the optical axis"
+    AZIMUTH = "has the cylinder along y"
+    ELEVATION = "has the cylinder level"
+    SHELLS = "has a cylinder without shells"
 
 
 @dataclass(frozen=True)
@@ -46,20 +66,31 @@ class Scheme:
     """Whether it reaches ``tracing.accuracy``, in one band, or says that it does not."""
     steepest: float = math.inf
     """Numerical aperture over the water's index above which it can miss light."""
+    honours: frozenset[Ability] = frozenset()
+    """What it can do beyond the thesis's instrument."""
+    mode_field_diameter: float | None = None
+    """Of the fibre whose mode fills the pupil where a config gives none, µm; else it is even."""
     presets: Mapping[str, Mapping[str, float]] = dataclasses.field(default_factory=dict)
     """Options that a name stands for."""
 
+    instrument: tuple[str, ...] = (
+        "scene", "objective", "detector", "tracing.max_intersections",
+    )  # fmt: skip
+    """Dotted keys of the instrument that its light depends on."""
+
     @property
     def keys(self) -> tuple[str, ...]:
-        """Dotted keys of the config that its light depends on, besides the instrument's."""
+        """Dotted keys of the config that its light depends on."""
         # an accuracy is one in a band; rays that are counted serve any
         band = ("spectrum.wavelength",) if self.controls_error else ()
-        return (*(f"tracing.{name}" for name in self.options), *band)
+        own = (f"tracing.{name}" for name in self.options)
+        return (*self.instrument, "tracing.scheme", *own, *band)
 
     @property
     def summing_keys(self) -> tuple[str, ...]:
         """Dotted keys, besides the spectrum's, that its field over the wavenumbers depends on."""
-        return ("tracing.accuracy",) if self.controls_error else ()
+        accuracy = ("tracing.accuracy",) if self.controls_error else ()
+        return (*accuracy, "polarisation") if Ability.POLARISATION in self.honours else accuracy
 
     def chosen(self, tracing: object) -> Options:
         """Return the values that a section ``tracing`` has for the scheme's options."""
@@ -118,8 +149,19 @@ FULL_WAVE = Scheme(
     cost=of_waves,
     light="waves",
     controls_error=True,
+    honours=frozenset(
+        {
+            Ability.PUPIL, Ability.APLANATIC, Ability.POLARISATION, Ability.OFF_AXIS,
+            Ability.AZIMUTH,
+        }
+    ),
+    mode_field_diameter=5.0,
+    instrument=(
+        "scene", "objective.numerical_aperture", "objective.magnification", "objective.pupil",
+        "objective.apodisation",
+    ),
     presets={"exact": {"accuracy": 1e-4}},
-)
+)  # fmt: skip
 """Maxwell's equations solved in partial waves about the cylinder, to a stated accuracy."""
 
 SCHEMES: Mapping[str, Scheme] = {row.name: row for row in (COUNTED_RAYS, LIGHT_PATHS, FULL_WAVE)}

@@ -1,17 +1,19 @@
 """Bessel functions of all orders at once, by recurrence."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.special import y0, y1
 
+Array = NDArray[Any]
+
 
 class Cylindrical(NamedTuple):
     """A cylinder function and its derivative by the argument, of orders 0 to M: (..., M + 1)."""
 
-    value: NDArray[np.complex128]
-    slope: NDArray[np.complex128]
+    value: Array
+    slope: Array
 
 
 def bessel_j(x: NDArray[np.float64], order: int) -> Cylindrical:

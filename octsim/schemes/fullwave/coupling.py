@@ -12,7 +12,7 @@ An outgoing partial wave is a sum of plane waves over complex angles β, each re
 built: the sum over m' is taken at the contour's nodes, reflected, and integrated.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 from octsim.schemes.fullwave.plane import reflection
 
-Array = NDArray[np.complex128]
+Array = NDArray[Any]
 _STEEPEST = 1 - 0.6 / np.pi
 """Of a right angle: how far the contour keeps from the branch points above it."""
 

@@ -3,7 +3,7 @@ r"""The cylinder: which waves it scatters of those that reach it, order by order
 (J. R. Wait, Can. J. Phys. 33, 189 (1955)), for :math:`(E_y, Z_0 H_y)` at oblique incidence.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from octsim.schemes.fullwave.bessel import Cylindrical, bessel_j, hankel, second_hankel
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 
-Array = NDArray[np.complex128]
+Array = NDArray[Any]
 
 
 class Scattering(NamedTuple):
@@ -29,7 +29,7 @@ class Scattering(NamedTuple):
 class _Side(NamedTuple):
     """What the boundary condition needs of one medium."""
 
-    index: float
+    n: float
     kappa: NDArray[np.float64]
     """Over k."""
     skew: Array
@@ -81,7 +81,7 @@ def _tangential(one: Cylindrical, side: _Side) -> Array:
     r"""Return the matrix from :math:`(E_y, H_y)` to what is continuous beside them."""
     kappa = side.kappa[:, np.newaxis]
     skew, turn = side.skew * one.value, one.slope / kappa
-    return _matrix(skew, turn, -(side.index**2) * turn, skew)
+    return _matrix(skew, turn, -(side.n**2) * turn, skew)
 
 
 def _boundary(outer: Cylindrical, outside: _Side, core: Cylindrical, inside: _Side) -> Array:

@@ -1,5 +1,6 @@
 """The scene of the scheme fullwave: one cylinder over one plane, in numbers."""
 
+import math
 from typing import NamedTuple
 
 from octsim.base.errors import OctsimError
@@ -32,6 +33,11 @@ class CylinderOnPlane(NamedTuple):
         return self.gap + self.radius
 
 
+def azimuth_of(scene: Scene) -> float:
+    """Return the angle from the y axis to that of the scene's cylinder, rad."""
+    return next(one.azimuth for one in scene.surfaces if isinstance(one, Cylinder))
+
+
 def cylinder_on_plane(scene: Scene) -> CylinderOnPlane:
     """Return a scene in numbers.
 
@@ -53,5 +59,6 @@ def cylinder_on_plane(scene: Scene) -> CylinderOnPlane:
     )
     return CylinderOnPlane(
         glass, water, neuron, cylinder.z - cylinder.radius - plane.height, 2 * cylinder.radius,
-        cylinder.x,
+        # an axis turned about the vertical one through (x, 0) is closer
+        cylinder.x * math.cos(cylinder.azimuth),
     )  # fmt: skip

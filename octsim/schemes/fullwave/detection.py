@@ -1,5 +1,7 @@
 r"""What the detector collects: the overlap of returned light with the pupil's own mode."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,7 +11,7 @@ from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 from octsim.schemes.fullwave.illumination import Lit
 from octsim.schemes.fullwave.plane import fresnel, normal
 
-Array = NDArray[np.complex128]
+Array = NDArray[Any]
 
 
 def collected(lit: Lit, e: Array, h: Array, n_water: float, along: NDArray[np.float64]) -> Array:

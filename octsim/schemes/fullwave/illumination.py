@@ -9,7 +9,7 @@ with F = :math:`(E_y, Z_0 H_y)` of an aplanatic objective (Richards & Wolf, Proc
 (1959)).
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from octsim.optics.pupil import Pupil
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 from octsim.schemes.fullwave.plane import normal, reflection
 
-Array = NDArray[np.complex128]
+Array = NDArray[Any]
 
 
 class Lit(NamedTuple):
@@ -86,7 +86,6 @@ def illumination(
     r = reflection(
         sideways + 0j, across + 0j, below, above, scene.n_glass, scene.n_water, upwards=True
     )
-    kappa = np.sqrt(scene.n_water**2 - along**2)[:, np.newaxis]
     angle = np.arctan2(across, above.real) + 0j
     wavenumber = k[:, np.newaxis, np.newaxis]
     weight = np.stack([pupil.amplitude(sine, aperture, one) for one in k.tolist()])

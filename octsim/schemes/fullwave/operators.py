@@ -2,7 +2,7 @@
 
 import threading
 from collections import OrderedDict
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 from octsim.schemes.fullwave.illumination import mirror_waves
 from octsim.schemes.fullwave.orders import Orders
 
-Array = NDArray[np.complex128]
+Array = NDArray[Any]
 _KEPT = 6
 
 

@@ -4,12 +4,12 @@ Light of a component :math:`k_y` along the cylinder is reflected into both (coni
 Fresnel coefficients of s and p light turned into these components. Wavenumbers are in units of k.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.complex128]
+Array = NDArray[Any]
 
 
 class Reflection(NamedTuple):

@@ -1,5 +1,7 @@
 r"""What the cylinder over the plane scatters: :math:`b = T (a + R b)` for each k and k_y."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -7,7 +9,7 @@ from octsim.schemes.fullwave.coupling import both_signs, reflected
 from octsim.schemes.fullwave.illumination import Lit
 from octsim.schemes.fullwave.operators import Operator
 
-Array = NDArray[np.complex128]
+Array = NDArray[Any]
 Waves = tuple[Array, Array]
 """Of E_y and H_y, (K, Y, M + 1) each."""
 _ITERATIONS = 40

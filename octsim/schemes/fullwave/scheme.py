@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.optics.polarisation import jones_rows
 from octsim.optics.scene import Scene
-from octsim.schemes.fullwave.cylinder_on_plane import cylinder_on_plane
+from octsim.schemes.fullwave.cylinder_on_plane import azimuth_of, cylinder_on_plane
 from octsim.schemes.fullwave.operators import Operators
 from octsim.schemes.fullwave.series import over_band
 from octsim.schemes.fullwave.solve import solve
@@ -23,16 +24,21 @@ def tracer(optics: Optics, options: Options) -> LightAt:
     operators = Operators()
 
     def light_at(scene: Scene, focus: float) -> Waves:
-        return solve(
+        found = solve(
             cylinder_on_plane(scene), optics.pupil, optics.numerical_aperture, focus, optics.band,
             options["accuracy"], operators,
         )  # fmt: skip
+        return found._replace(azimuth=azimuth_of(scene))
 
     return light_at
 
 
 def field(
-    light: Waves, wavenumber: NDArray[np.float64], _optics: Optics, _options: Options
+    light: Waves, wavenumber: NDArray[np.float64], optics: Optics, _options: Options
 ) -> Field:
-    """Return the fields of both polarisations, by the Chebyshev series through their nodes."""
-    return Field(over_band(light, light.values, wavenumber), light.error)
+    """Return the detected fields, by the Chebyshev series through both polarisations' nodes."""
+    rows = jones_rows(optics.polarisation, light.azimuth)
+    fields = over_band(light, light.values, wavenumber)
+    values = rows[:, :1] * fields[0] + rows[:, 1:] * fields[1]
+    weight = np.sqrt((np.abs(rows).sum(axis=1) ** 2).mean())
+    return Field(values, float(weight) * light.error)

@@ -46,6 +46,8 @@ def over_band(
     ndarray, shape (..., K)
     """
     number = len(waves.wavenumber)
+    if not number:
+        return np.full((*values.shape[:-1], wavenumber.size), complex(np.nan, np.nan))
     # the nodes' own ends, so that nothing else has to be kept
     outermost = np.cos(np.pi / (2 * number))
     first, last = waves.wavenumber[0], waves.wavenumber[-1]

@@ -1,6 +1,6 @@
 """The field of one point to an accuracy: solved, compared with itself, and solved better."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ from octsim.schemes.fullwave.scatter import incoming, scattered
 from octsim.schemes.fullwave.series import coefficients, nodes
 from octsim.schemes.light import TERMS, AccuracyStatus, Waves
 
-Array = NDArray[np.complex128]
+Array = NDArray[Any]
 _CHECKED = 3
 """Wavenumbers at which a solution is compared with one of raised orders."""
 _TAIL = 3
