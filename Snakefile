@@ -2,7 +2,7 @@
 #
 #   config ─┬─ focus_scan
 #           ├─ focus_sweep ─ focus_law ─┐   (where sweep.focus is law)
-#           └──────────────────── detections ─ spectra ─ phase_slope
+#           └────────── detections or fields ─ spectra ─ phase_slope
 #                                              (and paths)
 #
 # Each rule is a job of that table. Its params are the config keys that it reads and a digest of the
@@ -33,10 +33,11 @@ from octsim.cli.job_server import PYTHON, SOCKET, start
 from octsim.config.derive import parts_of
 from octsim.config.load import load_and_tell
 from octsim.config.models import Config
-from octsim.datasets.catalog import CATALOG, STAGES, TARGETS, Stage, jobs
+from octsim.config.told import told
+from octsim.datasets.catalog import CATALOG, TARGETS, Stage, jobs
 from octsim.datasets.code import code_of, figures_code
 from octsim.datasets.gallery import drawn_with, run_figures
-from octsim.datasets.keys import inputs_of, keys_read
+from octsim.datasets.keys import inputs_of, keys_read, stages_of
 from octsim.stages.cost_estimate import check_budget, expected
 from octsim.stages.run_id import begin, is_latest
 from octsim.stages.workload import shares_of
@@ -55,6 +56,8 @@ except OctsimError as error:
 if run.run == Config().run and run != Config():
     remark = "run: not given, so this goes to results/thesis in the place of the thesis itself"
     print(f"octsim: warning: {remark}", file=sys.stderr)
+for line in told(run):
+    print(f"octsim: {line}", file=sys.stderr)
 for remark in said:
     print(f"octsim: warning: {remark}", file=sys.stderr)
 
@@ -188,7 +191,7 @@ onerror:
 
 rule all:
     input:
-        [f"{FOLDER}/{stage}.nc" for stage in STAGES],
+        [f"{FOLDER}/{stage}.nc" for stage in stages_of(run)],
         [f"{FOLDER}/figures/{name}.{form}" for name in FIGURES for form in ("png", "svg")],
 
 

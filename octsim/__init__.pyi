@@ -14,9 +14,11 @@ from .phase.by_config import phase_of as phase_of
 from .phase.measured_series import read_series as read_series
 from .phase.measured_spectra import read_spectra as read_spectra
 from .stages.detections import detections as detections
+from .stages.fields import fields as fields
 from .stages.focus_law import focus_law as focus_law
 from .stages.focus_scan import focus_scan as focus_scan
 from .stages.focus_sweep import focus_sweep as focus_sweep
+from .stages.focus_sweep import ray_focus_sweep as ray_focus_sweep
 from .stages.fourier import fourier as fourier
 from .stages.gaussian_fits import gaussian_fits as gaussian_fits
 from .stages.paths import light_paths as light_paths

@@ -14,6 +14,8 @@ EDITS: dict[str, tuple[Any, set[str], set[str]]] = {
     "scene.refractive_index.water": (1.34, EVERYTHING, EVERYTHING),
     "scene.refractive_index.neuron": (1.38, EVERYTHING, EVERYTHING),
     "scene.gap": ("6 nm", EVERYTHING, EVERYTHING),
+    "scene.layers": (["water", "glass"], EVERYTHING, EVERYTHING),
+    "scene.cylinders": ([{"medium": "neuron", "gap": "6 nm"}], EVERYTHING, EVERYTHING),
     "objective.numerical_aperture": (1.1, EVERYTHING, EVERYTHING),
     "objective.focus_distance": ("310 um", EVERYTHING, EVERYTHING),
     "objective.magnification": (21, EVERYTHING, EVERYTHING),

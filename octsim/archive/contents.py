@@ -14,8 +14,9 @@ from octsim.archive.run_folder import FIGURES, Run
 from octsim.base.provenance import LOCK, environment, lock_file
 from octsim.config.archive import ArchiveConfig
 from octsim.config.models import Config
-from octsim.datasets.catalog import STAGES, TARGETS
+from octsim.datasets.catalog import TARGETS
 from octsim.datasets.gallery import CAPTIONS, drawn_with, figures_of
+from octsim.datasets.keys import stages_of
 from octsim.datasets.versions import printable
 
 CONFIG = "config.yaml"
@@ -135,7 +136,7 @@ def omissions(run: Run, config: Config, items: Iterable[Item]) -> list[str]:
     """Return what a reader may miss in the archive of a run, a line each."""
     packed = {item.name for item in items}
     drawn = {Path(name).stem for name in packed if name.startswith(f"{FIGURES}/")}
-    missing = [f"{stage}.nc" for stage in STAGES if stage not in run.datasets]
+    missing = [f"{stage}.nc" for stage in stages_of(config) if stage not in run.datasets]
     missing += [
         f"{FIGURES}/{name}" for name in _stages_of_figures(run, config) if name not in drawn
     ]

@@ -14,5 +14,9 @@ def named(text: str) -> Any:
 
 def called(work: Callable[..., Any], *arguments: object, **offered: object) -> Any:
     """Call a function with its arguments, and with those of the offered keywords that it names."""
-    parameters = inspect.signature(work).parameters
-    return work(*arguments, **{name: one for name, one in offered.items() if name in parameters})
+    return work(*arguments, **{name: one for name, one in offered.items() if names(work, name)})
+
+
+def names(work: Callable[..., Any], keyword: str) -> bool:
+    """Return whether a function has a parameter of a name."""
+    return keyword in inspect.signature(work).parameters

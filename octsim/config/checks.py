@@ -7,8 +7,10 @@ from collections.abc import Iterator
 from pydantic import BaseModel
 
 from octsim.base.errors import ConfigError
+from octsim.config.abilities import beyond_scheme
 from octsim.config.fields import DECIMALS, Range
 from octsim.config.models import Config, FocusLine
+from octsim.config.scene_checks import diameters_of, impossible_scene, scene_remarks
 from octsim.config.units import format_length
 from octsim.optics.two_beams import aliasing_step
 from octsim.schemes.table import COUNTED_RAYS, SCHEMES
@@ -51,12 +53,11 @@ def highest_focus(config: Config) -> tuple[str, float]:
 
 def impossible(config: Config) -> Iterator[str]:
     """Return what is impossible though each key alone is fine, a line each."""
-    aperture, glass = config.objective.numerical_aperture, config.scene.refractive_index.glass
-    if not aperture < glass:
-        yield (
-            f"objective.numerical_aperture: {aperture} given; it must be below the index of glass, "
-            f"scene.refractive_index.glass = {glass}"
-        )
+    if of_scene := list(impossible_scene(config)):
+        yield from of_scene
+    else:
+        yield from beyond_scheme(config)
+        yield from _below_objective(config)
     band = config.spectrum.wavelength
     if not band.min < band.max:
         yield (
@@ -91,6 +92,16 @@ def impossible(config: Config) -> Iterator[str]:
         )
 
 
+def _below_objective(config: Config) -> Iterator[str]:
+    aperture, scene = config.objective.numerical_aperture, config.scene
+    medium, index = scene.objective_medium, scene.objective_index
+    if not aperture < index:
+        yield (
+            f"objective.numerical_aperture: {aperture} given; it must be below the index of "
+            f"{medium}, scene.refractive_index.{medium} = {index}"
+        )
+
+
 def require_possible(config: Config) -> None:
     """Refuse a config that is impossible.
 
@@ -104,7 +115,7 @@ def require_possible(config: Config) -> None:
 
 
 def _steep_remarks(config: Config) -> Iterator[str]:
-    aperture, water = config.objective.numerical_aperture, config.scene.refractive_index.water
+    aperture, water = config.objective.numerical_aperture, config.scene.host_index
     scheme = SCHEMES[config.tracing.scheme]
     if scheme.steepest * water < aperture:
         yield (
@@ -117,20 +128,14 @@ def _steep_remarks(config: Config) -> Iterator[str]:
 def rounding_remarks(config: Config) -> list[str]:
     """Say, a line each, where rounding can move the phase by more than 1e-9 rad."""
     said = []
-    diameters = {
-        "sweep.diameters.start": config.sweep.diameters.start,
-        "sweep.diameters.stop": config.sweep.diameters.stop,
-        "focus_law.diameters.start": config.focus_law.diameters.start,
-        "focus_law.diameters.stop": config.focus_law.diameters.stop,
-        "focus_scan.diameter": config.focus_scan.diameter,
-    }
+    diameters = diameters_of(config)
     key, largest = max(diameters.items(), key=lambda item: item[1])
     if largest > LARGEST_DIAMETER:
         said.append(
             f"{key}: {format_length(largest)} is above {format_length(LARGEST_DIAMETER)}, so "
             "rounding of the cylinder's height can move the phase by more than 1e-9 rad"
         )
-    gap = config.scene.gap
+    gap = config.scene.swept_gap
     key, smallest = min(diameters.items(), key=lambda item: item[1])
     if gap > LARGEST_GAP * smallest:
         said.append(
@@ -138,7 +143,7 @@ def rounding_remarks(config: Config) -> list[str]:
             f"{format_length(smallest)}, so rounding of heights can move the phase by more than "
             "1e-9 rad"
         )
-    aperture, water = config.objective.numerical_aperture, config.scene.refractive_index.water
+    aperture, water = config.objective.numerical_aperture, config.scene.host_index
     if water < aperture:
         said.append(
             f"objective.numerical_aperture: {aperture} is above the index of water, {water}, so "
@@ -150,9 +155,9 @@ def rounding_remarks(config: Config) -> list[str]:
 
 def plain_remarks(config: Config) -> list[str]:
     """Return what is possible but likely not meant, a line each, of a config without a grid."""
-    said = list(_steep_remarks(config))
+    said = [*_steep_remarks(config), *scene_remarks(config)]
     band, diameters = config.spectrum.wavelength, config.sweep.diameters
-    n_neuron = config.scene.refractive_index.neuron
+    n_neuron = config.scene.swept_index
     k_min, k_max = 2 * math.pi / band.max, 2 * math.pi / band.min
     step = (diameters.stop - diameters.start) / (diameters.num - 1)
     largest = aliasing_step(n_neuron, k_min, k_max)

@@ -6,6 +6,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from octsim.base.errors import ConfigError
+from octsim.config.abilities import as_far_as
 from octsim.config.checks import require_possible
 from octsim.config.messages import explain
 from octsim.config.models import Config
@@ -19,7 +20,10 @@ def part_of(data: Mapping[str, Any], key: str) -> Any:
     """Return what stands under a dotted key of a config's plain data, or None."""
     part: Any = data
     for name in key.split("."):
-        part = part.get(name) if isinstance(part, Mapping) else None
+        if isinstance(part, list) and name.isdigit() and int(name) < len(part):
+            part = part[int(name)]
+        else:
+            part = part.get(name) if isinstance(part, Mapping) else None
     return part
 
 
@@ -60,14 +64,19 @@ def nested(key: str, value: object) -> dict[str, Any]:
 
 
 def merge(base: Mapping[str, Any], overlay: Mapping[str, Any]) -> dict[str, Any]:
-    """Lay one mapping over another: mappings merge deeply, everything else replaces."""
-    merged = dict(base)
-    for key, value in overlay.items():
-        below = merged.get(key)
-        if isinstance(below, Mapping) and isinstance(value, Mapping):
-            value = merge(below, value)
-        merged[key] = value
-    return merged
+    """Lay one mapping over another: mappings merge deeply, everything else replaces.
+
+    Of a list, a mapping from places in it, as text, replaces entries, or parts of them.
+    """
+    return {**base, **{key: _laid(base.get(key), value) for key, value in overlay.items()}}
+
+
+def _laid(below: Any, value: Any) -> Any:
+    if not isinstance(value, Mapping):
+        return value
+    if isinstance(below, list) and value and value.keys() <= {str(i) for i in range(len(below))}:
+        return [_laid(part, value.get(str(place), part)) for place, part in enumerate(below)]
+    return merge(below, value) if isinstance(below, Mapping) else value
 
 
 def overlaid(base: Mapping[str, Any], overlay: Mapping[str, Any]) -> dict[str, Any]:
@@ -126,19 +135,27 @@ def changed(config: Config, *overlays: Mapping[str, Any]) -> Config:
 def by_rays(config: Config, rays: int) -> Config:
     """Return a config that counts some number of rays."""
     asked = {"preset": None, "scheme": COUNTED_RAYS.name, "rays": rays}
-    return changed(config, {"tracing": asked})
+    return changed(as_far_as(COUNTED_RAYS, config), {"tracing": asked})
 
 
 def counting_rays(config: Config) -> Config:
     """Return a config that counts as many rays as its key ``tracing.rays`` says."""
     tracing = config.tracing.model_copy(update={"scheme": COUNTED_RAYS.name})
-    return config.model_copy(update={"tracing": tracing})
+    return as_far_as(COUNTED_RAYS, config).model_copy(update={"tracing": tracing})
 
 
 def by_accuracy(config: Config, accuracy: float, **tracing: int) -> Config:
     """Return a config that integrates light paths to an accuracy."""
     asked = {"preset": None, "scheme": LIGHT_PATHS.name, "accuracy": accuracy}
-    return changed(config, {"tracing": asked | tracing})
+    return changed(as_far_as(LIGHT_PATHS, config), {"tracing": asked | tracing})
+
+
+def by_light_paths(config: Config) -> Config:
+    """Return a config whose light is that of the light paths, at their preset standard."""
+    tracing = config.tracing.model_copy(
+        update={"scheme": LIGHT_PATHS.name, **LIGHT_PATHS.presets["standard"]}
+    )
+    return as_far_as(LIGHT_PATHS, config).model_copy(update={"tracing": tracing})
 
 
 def reference(config: Config) -> Config:

@@ -1,7 +1,9 @@
 """What the config's sections are made of: numbers, lengths and ranges with their limits."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
+import yaml
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from octsim.config.units import Length
@@ -19,6 +21,14 @@ def number(value: object) -> object:
         except ValueError:
             return value
     return value
+
+
+def as_text(value: Any) -> str:
+    """Write a value of the config as a user would."""
+    if isinstance(value, Mapping | list | tuple | bool) or value is None:
+        text: str = yaml.safe_dump(value, default_flow_style=True, width=10_000)
+        return text.removesuffix("...\n").strip()
+    return str(value)
 
 
 Number = Annotated[float, BeforeValidator(number), Field(allow_inf_nan=False)]

@@ -5,11 +5,10 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-import yaml
-
 from octsim.base.errors import ConfigError
 from octsim.config.checks import plain_remarks
 from octsim.config.derive import bears_on, config_at
+from octsim.config.fields import as_text as as_text
 from octsim.config.models import Config
 
 FIXED = (
@@ -45,19 +44,14 @@ class Combination(NamedTuple):
         return ", ".join(f"{key} = {as_text(value)}" for key, value in self.values.items())
 
 
-def as_text(value: Any) -> str:
-    """Write a value of the config as a user would."""
-    if isinstance(value, Mapping | list | tuple | bool) or value is None:
-        text: str = yaml.safe_dump(value, default_flow_style=True, width=10_000)
-        return text.removesuffix("...\n").strip()
-    return str(value)
-
-
 def value_at(config: Config, key: str) -> Any:
     """Return what a dotted key of a config is, in its own units; None if it has no such part."""
     value: Any = config
     for name in key.split("."):
-        value = getattr(value, name, None)
+        if isinstance(value, tuple) and name.isdigit():
+            value = value[int(name)] if int(name) < len(value) else None
+        else:
+            value = getattr(value, name, None)
     return value
 
 

@@ -1,5 +1,6 @@
 """Values of a grid: written out as lists and checked, each alone and all combinations."""
 
+import contextlib
 import itertools
 import math
 from collections import Counter
@@ -15,7 +16,7 @@ from octsim.config.fields import evenly
 from octsim.config.grid import FIXED, as_text, axes, combinations, value_at
 from octsim.config.messages import explain, known_keys, nearest_key
 from octsim.config.models import Config, Grid
-from octsim.config.units import format_length, parse_length
+from octsim.config.units import ANGLE, LENGTH, Quantity, parse
 
 MOST = 100_000
 """Combinations of one grid."""
@@ -31,7 +32,7 @@ def expanded(config: Config) -> Config:
         If a key is unknown or can't be varied, its values are none or wrong, or a combination is
         impossible. One line for each problem.
     """
-    listed = {key: _listed(key, given) for key, given in config.grid.varied.items()}
+    listed = {key: _listed(config, key, given) for key, given in config.grid.varied.items()}
     _check_keys(config, listed)
     given = config.model_copy(update={"grid": _grid(config, listed)})
     problems: dict[str, None] = {}
@@ -75,9 +76,9 @@ def _raise(problems: Mapping[str, None]) -> None:
         raise ConfigError("\n".join(lines))
 
 
-def _listed(key: str, given: Any) -> list[Any]:
+def _listed(config: Config, key: str, given: Any) -> list[Any]:
     """Write out the values of one key."""
-    known = set(known_keys())
+    known = set(known_keys(config))
     if key not in known:
         raise ConfigError(
             f"grid.{key}: unknown key; write it with dots, as in detector.core_diameter: [...]; "
@@ -117,13 +118,13 @@ def _spaced(key: str, given: Mapping[str, Any]) -> list[Any]:
         raise ConfigError(f"grid.{key}: {dict(given)} given; both ends should be numbers")
     if not isinstance(num, int) or isinstance(num, bool) or not 2 <= num <= MOST:
         raise ConfigError(f"grid.{key}.num: {num!r} given; a range has 2 to {MOST} values")
-    lengths = all(isinstance(end, str) and end.strip()[-1:].isalpha() for end in ends)
+    quantity = _quantity(ends)
     try:
-        start, stop = [parse_length(end) if lengths else float(end) for end in ends]
+        start, stop = [parse(quantity, end) if quantity else float(end) for end in ends]
     except (TypeError, ValueError):
         raise ConfigError(
-            f"grid.{key}: {dict(given)} given; both ends should be numbers, or both lengths with "
-            "their unit"
+            f"grid.{key}: {dict(given)} given; both ends should be numbers, or both lengths (or "
+            "angles) with their unit"
         ) from None
     if not (math.isfinite(start) and math.isfinite(stop) and start < stop):
         raise ConfigError(
@@ -131,8 +132,8 @@ def _spaced(key: str, given: Mapping[str, Any]) -> list[Any]:
             "or the range is empty"
         )
     values: list[float] = evenly(start, stop, num).tolist()
-    if lengths:
-        return [format_length(value) for value in values]
+    if quantity:
+        return [f"{value!r} {quantity.unit}" for value in values]
     if not all(isinstance(end, int) for end in ends):
         return values
     if not all(map(float.is_integer, values)) and isinstance(value_at(Config(), key), int):
@@ -141,6 +142,16 @@ def _spaced(key: str, given: Mapping[str, Any]) -> list[Any]:
             "a num that divides the range, or list them"
         )
     return [int(value) if value.is_integer() else value for value in values]
+
+
+def _quantity(ends: list[Any]) -> Quantity | None:
+    """Return what both ends of a range are, if they have units."""
+    for quantity in (LENGTH, ANGLE):
+        with contextlib.suppress(ValueError):
+            for end in ends:
+                parse(quantity, end)
+            return quantity
+    return None
 
 
 def _check_keys(config: Config, listed: Mapping[str, list[Any]]) -> None:

@@ -13,7 +13,7 @@ from octsim.config.derive import merge, overlaid, validated
 from octsim.config.grid import remarks
 from octsim.config.grid_values import expanded
 from octsim.config.models import Config
-from octsim.config.unread import asked_for, unread
+from octsim.config.unread import asked_for, unread, unread_scene
 
 
 class _Loader(yaml.SafeLoader):
@@ -112,4 +112,4 @@ def load_and_tell(*overlays: str | Path | Mapping[str, Any]) -> tuple[Config, li
         config = expanded(config)
     else:
         require_possible(config)
-    return config, [*remarks(config), *unread(config, asked)]
+    return config, [*remarks(config), *unread(config, asked), *unread_scene(config, asked)]

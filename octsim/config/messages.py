@@ -9,26 +9,48 @@ from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
 from octsim.config.archive import Creator
-from octsim.config.models import Config, FocusLine
+from octsim.config.models import Config, FocusLine, Grid
+from octsim.config.scene import Layer, Shell
+from octsim.config.units import ANGLE, LENGTH
 
 
 def known_keys(model: type[BaseModel] | BaseModel = Config, prefix: str = "") -> Iterator[str]:
     """Return the dotted path of every key of the config, sections before what they hold."""
     model = model() if isinstance(model, type) else model
-    for name in type(model).model_fields:
+    # of a grid, what is varied stands under keys of their own
+    free = () if isinstance(model, Grid) else model.model_extra or ()
+    for name in (*type(model).model_fields, *free):
         yield prefix + name
         value = getattr(model, name)
+        for place, part in enumerate(value if isinstance(value, tuple) else ()):
+            if isinstance(part, BaseModel):
+                yield f"{prefix}{name}.{place}"
+                if isinstance(part, Layer) and part.thickness is None:
+                    continue  # it is written as its name alone
+                yield from known_keys(part, f"{prefix}{name}.{place}.")
         if isinstance(value, BaseModel):
             yield from known_keys(value, f"{prefix}{name}.")
     if isinstance(model, Config):
         yield from (f"sweep.focus.{name}" for name in FocusLine.model_fields)
         yield from (f"archive.creators.{name}" for name in Creator.model_fields)
+        yield from ("objective.pupil.gaussian", "objective.pupil.fibre")
+
+
+def _of_any_entry(key: str) -> str:
+    return ".".join(part for part in key.split(".") if not part.isdigit())
+
+
+_IN_LISTS = (
+    *(f"scene.layers.{name}" for name in Layer.model_fields),
+    *(f"scene.cylinders.shells.{name}" for name in Shell.model_fields),
+)
+"""Keys in lists that may be empty, of any of their entries."""
 
 
 def nearest_key(key: str) -> str:
     """Return the known key that is most like `key`: in its own section, else by its last part."""
     section, _, name = key.rpartition(".")
-    keys = list(known_keys())
+    keys = [*dict.fromkeys(map(_of_any_entry, known_keys())), *_IN_LISTS]
     siblings = {k.rpartition(".")[2]: k for k in keys if k.rpartition(".")[0] == section}
     everywhere = {k.rpartition(".")[2]: k for k in reversed(keys)}
     initials = {"".join(word[0] for word in k.split("_")): path for k, path in siblings.items()}
@@ -40,8 +62,13 @@ def nearest_key(key: str) -> str:
 
 
 _OF_TWO_KINDS = (
-    ["sweep", "focus"], ["processing", "window"], ["processing", "depth"], ["expansion", "drift"],
-)  # fmt: skip
+    ["sweep", "focus"],
+    ["processing", "window"],
+    ["processing", "depth"],
+    ["expansion", "drift"],
+    ["objective", "pupil"],
+)
+_LISTS = ("processing.window", "scene.layers", "scene.cylinders", "scene.cylinders.shells")
 
 
 def explain(error: ErrorDetails) -> str:
@@ -50,11 +77,11 @@ def explain(error: ErrorDetails) -> str:
     if place[:2] in _OF_TWO_KINDS:
         del place[2:3]  # which of the two it was read as
     path = ".".join(place)
-    entry = ".".join(part for part in place if not part.isdigit())  # of a list, any of its entries
+    entry = _of_any_entry(path)
     listed = isinstance(error["input"], list | tuple) and error["type"] != "model_type"
     varies = listed and place[0] != "archive"  # a run has one
     key = next((name for name in (place[-1], path) if name in set(known_keys())), None)
-    if varies and key and key != "processing.window":
+    if varies and key and entry not in _LISTS:
         return (
             f"{path}: {error['input']!r} given; several values of one key stand in the grid: "
             f"write grid: {{{key}: [...]}}"
@@ -81,6 +108,10 @@ def explain(error: ErrorDetails) -> str:
         )
     elif error["type"] in {"model_type", "model_attributes_type"}:
         message = "it should be a mapping of keys to values"
+    elif path == "objective.pupil":
+        message = "it should be uniform, {gaussian: 1.0} or {fibre: 5 um}, or null"
+    elif error["type"] == "string_pattern_mismatch" and path.startswith("scene."):
+        message = "it should be a plain name: letters, digits, '_' and '-', a letter first"
     elif path == "sweep.focus":
         message = (
             "it should be 'law', or {slope: 0.581, intercept: 69 nm}; slope 0 is a fixed focus"
@@ -97,15 +128,27 @@ def explain(error: ErrorDetails) -> str:
         )
     elif error["type"] == "int_type":
         message = "it should be a whole number, written out as digits"
-    elif error["type"] in {"greater_than_equal", "less_than_equal"} and unit_of(path) == "um":
-        message += " um"
+    elif error["type"] in {"greater_than_equal", "less_than_equal"} and unit_of(path) != "1":
+        message += f" {unit_of(path)}"
     return f"{path}: {error['input']!r} given; {message}"
 
 
 def unit_of(key: str) -> str:
-    """Return the unit of a key of the config: um where it is a length, else 1."""
+    """Return the unit of a key of the config: um of a length, rad of an angle, else 1."""
+    entry = _of_any_entry(key)
+    if entry in _WITHOUT_DEFAULT:
+        return _WITHOUT_DEFAULT[entry]
     value: Any = Config().to_dict()
-    for part in key.split("."):
+    for part in entry.split("."):
+        value = value[0] if isinstance(value, list) and value else value
         value = value.get(part) if isinstance(value, dict) else None
-    length = isinstance(value, str) and value.endswith(" um")
-    return "um" if length or key == "sweep.focus.intercept" else "1"
+    unit = value.rpartition(" ")[2] if isinstance(value, str) else ""
+    return unit if unit in {LENGTH.unit, ANGLE.unit} else "1"
+
+
+_WITHOUT_DEFAULT = {
+    "sweep.focus.intercept": LENGTH.unit, "objective.pupil.fibre": LENGTH.unit,
+    "scene.cylinders.diameter": LENGTH.unit, "scene.cylinders.gap": LENGTH.unit,
+    "scene.cylinders.shells.thickness": LENGTH.unit, "scene.layers.thickness": LENGTH.unit,
+    "polarisation.input": ANGLE.unit, "polarisation.analyser": ANGLE.unit,
+}  # fmt: skip

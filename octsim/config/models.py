@@ -15,7 +15,6 @@ from octsim.config.fields import (
     DiameterRange,
     FocusRange,
     FractionRange,
-    Index,
     Number,
     Position,
     PositiveLength,
@@ -24,8 +23,11 @@ from octsim.config.fields import (
     Wavelength,
 )
 from octsim.config.fields import key as _key
+from octsim.config.light import FibreMode, GaussianFill, PolarisationConfig
+from octsim.config.light import Objective as Objective
 from octsim.config.processing import Processing as Processing
-from octsim.config.units import Length
+from octsim.config.scene import RefractiveIndex as RefractiveIndex
+from octsim.config.scene import SceneConfig as SceneConfig
 from octsim.optics.band import wavenumbers
 from octsim.schemes.table import COUNTED_RAYS, PRESETS, SCHEMES
 
@@ -39,33 +41,6 @@ if TYPE_CHECKING:
     PresetName: TypeAlias = str
 else:  # a scheme is a row of the table, and nothing more to be listed here
     SchemeName, PresetName = Literal[tuple(SCHEMES)], Literal[tuple(PRESETS)]
-
-
-class RefractiveIndex(Section):
-    """Refractive indices of the three media."""
-
-    glass: Index = _key(1.52, "slide and immersion oil")
-    water: Index = _key(1.33, "around the neuron")
-    neuron: Index = _key(1.39, "the cylinder")
-
-
-class SceneConfig(Section):
-    """What the light meets: a cylinder over a glass slide, in water."""
-
-    refractive_index: RefractiveIndex = RefractiveIndex()
-    gap: Annotated[Length, Field(ge=0, le=1e6)] = _key(
-        "5 nm", "water between the glass and the neuron"
-    )
-
-
-class Objective(Section):
-    """The objective lens, an ideal thin one."""
-
-    numerical_aperture: PositiveNumber = _key(1.2, "below the index of glass")
-    focus_distance: PositiveLength = _key(
-        "300 um", "from the objective plane to the focus; beyond every focus"
-    )
-    magnification: PositiveNumber = _key(20.0, "object to fibre")
 
 
 class DetectorConfig(Section):
@@ -247,6 +222,7 @@ class Config(Section):
     )
     scene: SceneConfig = SceneConfig()
     objective: Objective = Objective()
+    polarisation: PolarisationConfig = PolarisationConfig()
     detector: DetectorConfig = DetectorConfig()
     tracing: Tracing = Tracing()
     spectrum: Spectrum = Spectrum()
@@ -262,6 +238,14 @@ class Config(Section):
     cache: Cache = Cache()
     budget: Budget = Budget()
     scatter: Scatter = Scatter()
+
+    @property
+    def pupil(self) -> GaussianFill | FibreMode | Literal["uniform"]:
+        """How light fills the pupil, of a plain config: as given, or the scheme's own way."""
+        if self.objective.pupil is not None:
+            return self.objective.pupil
+        own = SCHEMES[self.tracing.scheme].mode_field_diameter
+        return "uniform" if own is None else FibreMode.model_construct(fibre=own)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the config as plain data that `load_config` reads back to the same bits."""

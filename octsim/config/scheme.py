@@ -19,7 +19,4 @@ def options_of(config: Config) -> Mapping[str, Any]:
 
 def light_keys(config: Config) -> tuple[str, ...]:
     """Return the dotted keys that the light of a point of a plain config depends on."""
-    return (
-        "scene", "objective", "detector", "tracing.scheme", "tracing.max_intersections",
-        *scheme_of(config).keys,
-    )  # fmt: skip
+    return scheme_of(config).keys

@@ -8,7 +8,7 @@ import difflib
 import re
 from collections.abc import Mapping
 from decimal import Decimal, DecimalException
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from typing import Annotated, Any, NamedTuple
 
 from pydantic import BeforeValidator, PlainSerializer, WithJsonSchema
@@ -66,7 +66,7 @@ _PLAIN = (
 _INVERSE = re.compile(r"(?:1|rad)\s*/\s*(\S+)|(\S+?)\s*(?:\^|\*\*)?\s*-1")
 _NUMBER_PATTERN = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _NUMBER = re.compile(rf"\s*{_NUMBER_PATTERN}\s*")
-_QUANTITY = re.compile(rf"\s*({_NUMBER_PATTERN})\s*([^\W\d_]\S*|[°%]|\s1/\S+)\s*")
+_QUANTITY = re.compile(rf"\s*({_NUMBER_PATTERN})\s*([^\W\d_]\S*|[°%]|\s1?/\S+)\s*")
 
 
 @cache
@@ -107,6 +107,8 @@ class Quantity(NamedTuple):
     unit: str
     """In which it is kept: the base unit of its dimension."""
     examples: tuple[str, ...]
+    letters: str = "A-Za-z\u00b5\u03bc\u00c5\u212b\u00e5\u00f6"
+    """Of its units."""
 
     @property
     def remedy(self) -> str:
@@ -116,6 +118,10 @@ class Quantity(NamedTuple):
 
 
 LENGTH = Quantity("length", "a length", "um", ("5 nm", "1.4 um", "0.3 mm"))
+ANGLE = Quantity("angle", "an angle", "rad", ("30 deg", "0.5 rad"), "A-Za-z°")
+ATTENUATION = Quantity(
+    "inverse length", "an attenuation", "1/um", ("100 /cm", "10 /mm"), "A-Za-z\u00b5\u03bc1/^ -"
+)
 
 
 def parse(quantity: Quantity, text: object) -> float:
@@ -150,6 +156,7 @@ def _parsed(quantity: Quantity, text: str) -> float:
     if match is None:
         raise ValueError(_unreadable(quantity, bare=_NUMBER.fullmatch(text) is not None))
     number, name = match[1], match[2].strip()
+    name = f"1{name}" if name.startswith("/") else name
     unit = find_unit(name)
     if unit is None:
         nearest = _nearest(quantity, name)
@@ -191,17 +198,46 @@ def format_length(length: float) -> str:
     return f"{length!r} {LENGTH.unit}"
 
 
-_SCHEMA: dict[str, Any] = {
-    "type": "string",
-    "pattern": rf"^\s*({_NUMBER_PATTERN})\s*([A-Za-zµμÅÅåö]+)\s*$",
-    "description": "a length with its unit",
-    "examples": ["5 nm", "1.4 um", "300 um"],
-}
+def parse_angle(text: object) -> float:
+    """Read an angle such as ``"30 deg"``, in rad; see `parse`."""
+    return parse(ANGLE, text)
+
+
+def format_angle(angle: float) -> str:
+    """Write an angle in rad as text that `parse_angle` reads back to the same bits."""
+    return f"{angle!r} {ANGLE.unit}"
+
+
+def schema_of(quantity: Quantity) -> dict[str, Any]:
+    """Return the JSON Schema of a quantity as text."""
+    return {
+        "type": "string",
+        "pattern": rf"^\s*({_NUMBER_PATTERN})\s*([{quantity.letters}]+)\s*$",
+        "description": f"{quantity.noun} with its unit",
+        "examples": list(quantity.examples),
+    }
+
 
 Length = Annotated[
     float,
     BeforeValidator(parse_length),
     PlainSerializer(format_length, return_type=str),
-    WithJsonSchema(_SCHEMA),
+    WithJsonSchema(schema_of(LENGTH) | {"examples": ["5 nm", "1.4 um", "300 um"]}),
 ]
 """A length in µm, given as text with its unit."""
+
+Angle = Annotated[
+    float,
+    BeforeValidator(parse_angle),
+    PlainSerializer(format_angle, return_type=str),
+    WithJsonSchema(schema_of(ANGLE)),
+]
+"""An angle in rad, given as text with its unit."""
+
+Attenuation = Annotated[
+    float,
+    BeforeValidator(partial(parse, ATTENUATION)),
+    PlainSerializer("{!r} 1/um".format, return_type=str),
+    WithJsonSchema(schema_of(ATTENUATION)),
+]
+"""An attenuation in 1/µm, given as text with its unit."""

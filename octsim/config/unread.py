@@ -9,7 +9,7 @@ from octsim.config.grid import as_text, combinations, value_at
 from octsim.config.messages import known_keys
 from octsim.config.models import Config
 from octsim.config.processing import OPTIONS, Processing, Sinusoid, options_read
-from octsim.schemes.table import COUNTED_RAYS, PRESETS, SCHEMES
+from octsim.schemes.table import COUNTED_RAYS, PRESETS, SCHEMES, Ability
 
 _CHOICES: Mapping[str, tuple[str, ...]] = {
     "tracing.scheme": tuple(SCHEMES),
@@ -91,6 +91,42 @@ def unread(config: Config, asked: Mapping[str, Any]) -> list[str]:
         if calibrates and elsewhere.startswith("calibration"):
             continue
         said.append(_line(given, value, chosen, optional, elsewhere))
+    return said
+
+
+def unread_scene(config: Config, asked: Mapping[str, Any]) -> list[str]:
+    """Say, a line each, which keys of scene and objective are given in vain.
+
+    Parameters
+    ----------
+    config : Config
+        A checked config.
+    asked : mapping
+        Dotted keys that a user asks for, and their values.
+    """
+    every = [at.config for at in combinations(config, "scene", "objective", *_CHOICES, _PRESET)]
+    used = {medium for one in every for medium in one.scene.media.values()}
+    gaps = any(one.gap is None for at in every for one in at.scene.cylinders)
+    aplanatic = all(Ability.APLANATIC in SCHEMES[one.tracing.scheme].honours for one in every)
+    said = []
+    for given, value in asked.items():
+        key = given.removeprefix("grid.")
+        index = key.removeprefix("scene.refractive_index.")
+        if index != key and index not in used:
+            said.append(
+                f"{given}: {as_text(value)} given, but nothing in the scene is of {index}; leave "
+                "it out, or name it in scene.layers or scene.cylinders"
+            )
+        if key == "scene.gap" and not gaps:
+            said.append(
+                f"{given}: {as_text(value)} given, but each cylinder has a gap of its own; leave "
+                "one of them out"
+            )
+        if key == "objective.apodisation" and value == "none" and aplanatic:
+            said.append(
+                f"{given}: none is read as not given, and tracing.scheme: "
+                f"{every[0].tracing.scheme} is aplanatic of itself; leave it out"
+            )
     return said
 
 

@@ -26,12 +26,18 @@ def dimension_name(key: str) -> str:
     ('core_diameter', 'wavelength_min')
     """
     parts = key.split(".")
-    known = [parts for parts in (k.split(".") for k in known_keys()) if parts[0] not in FIXED]
+    if any(map(str.isdigit, parts)):  # in a list, whose other entries have the same keys
+        return "_".join(parts[1:])
+    known = [
+        parts
+        for parts in (k.split(".") for k in known_keys())
+        if parts[0] not in FIXED and not any(map(str.isdigit, parts))
+    ]
     # below a subsection the last part alone says little: neuron, min
     for count in range(min(len(parts) - 1, 2), len(parts)):
         tail = parts[-count:]
         alike = sum(other[-count:] == tail for other in known)
-        if alike == 1 and "_".join(tail) not in MEANINGS:
+        if alike <= 1 and "_".join(tail) not in MEANINGS:
             return "_".join(tail)
     return "_".join(parts)
 
@@ -46,10 +52,11 @@ def axis_coordinates(
         rows = {at.position[place]: at.config for at in reversed(along)}
         for number, key in enumerate(axis.keys):
             values: list[Any] = [value_at(rows[row], key) for row in range(len(axis.rows))]
+            unit = unit_of(key)
             if not all(isinstance(v, int | float) and not isinstance(v, bool) for v in values):
-                values = [as_text(row[number]) for row in axis.rows]
+                values, unit = [as_text(row[number]) for row in axis.rows], "1"
             words = key.replace(".", " ").replace("_", " ")
-            attributes = {"units": unit_of(key), "long_name": words, "config_key": key}
+            attributes = {"units": unit, "long_name": words, "config_key": key}
             found[dimension_name(key)] = xr.Variable(
                 (axis_name(axis),), np.array(values), attributes
             )

@@ -2,7 +2,7 @@
 
     config ─┬─ focus_scan
             ├─ focus_sweep ─ gaussian_fits ─ focus_law ─┐      (where sweep.focus is law)
-            └───────────────────────────────── detections ─┬─ spectra ─ fourier ─ phase_slope
+            └─────────────────────── detections or fields ─┬─ spectra ─ fourier ─ phase_slope
                                                            └─ paths
 
 A dataset is a row: what it follows from, what makes it, what is drawn from it. The workflow, the
@@ -13,10 +13,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from octsim.config.models import Config
-from octsim.schemes.table import COUNTED_RAYS
+from octsim.schemes.table import COUNTED_RAYS, SCHEMES
 
 LIGHT = "(light)"
 """Stands for the keys that the light of a point depends on, which are the scheme's to say."""
+RAYS = "(rays)"
+"""Stands for the keys that light depends on by rays, for a scheme that has none."""
 SUMMING = "(summing)"
 """Stands for the keys of the scheme that a sum over the wavenumbers depends on."""
 
@@ -48,7 +50,8 @@ class Stage:
     name: str
     make: str
     """The function that makes it, ``"module:function"``. It takes the config and the datasets that
-    this one comes after, and of the keywords threads, points, share and prepare what it names."""
+    this one comes after, those by keyword that it has a parameter of the name for; and of the
+    keywords threads, points, share and prepare what it names."""
     message: str
     """What making it is, in a few words."""
     reads: tuple[str, ...] = ()
@@ -60,6 +63,8 @@ class Stage:
     points: Callable[[Config], tuple[int, int]] | None = None
     """Of a stage that traces, and so may take long and is scattered then: returns how many rows its
     blocks are cut from, and how many points each has."""
+    light: str = ""
+    """Of a dataset that a run has for schemes of one kind of light only: that kind."""
     sums: bool = True
     """Whether a stage that traces sums its light to intensities, or keeps it."""
     per_sample: tuple[float, float] = (0.0, 0.0)
@@ -85,7 +90,7 @@ class Stage:
     @property
     def needs_light(self) -> bool:
         """Whether it looks for light itself."""
-        return self.traces or any(key.startswith((LIGHT, "tracing")) for key in self.reads)
+        return self.traces or any(key.startswith((LIGHT, RAYS, "tracing")) for key in self.reads)
 
     @property
     def counts_rays(self) -> bool:
@@ -96,6 +101,11 @@ class Stage:
     def module(self) -> str:
         """Module that makes it."""
         return self.make.partition(":")[0]
+
+
+def _rows(light: str, config: Config, rows: int) -> int:
+    """Return how many rows a stage traces that is for schemes of one kind of light."""
+    return rows if SCHEMES[config.tracing.scheme].light == light else 0
 
 
 _COMPARED = ("scene", "objective", "detector", "tracing", "spectrum", "sweep", "processing")
@@ -130,9 +140,19 @@ _RUN = (
         doubts="octsim.stages.centres:doubts_of_fits",
     ),
     Stage(
+        "ray_focus_sweep", "octsim.stages.focus_sweep:ray_focus_sweep",
+        "Measure the intensity over the focus by light paths too",
+        reads=(RAYS, "spectrum", "focus_law"),
+        points=lambda config: (
+            _rows("waves", config, config.focus_law.diameters.num), config.focus_law.fraction.num
+        ),
+        light="waves",
+    ),
+    Stage(
         "focus_law", "octsim.stages.focus_law:focus_law",
         "Fit the focus law through their centres",
-        after=("gaussian_fits",), job="focus_law", doubts="octsim.stages.centres:doubts",
+        after=("gaussian_fits", "ray_focus_sweep"), job="focus_law",
+        doubts="octsim.stages.centres:doubts",
         figures=(
             Figure("figure_7", "octsim.figures.focus_law:figure_7",
                    "foci of greatest intensity, and the line through them",
@@ -143,12 +163,20 @@ _RUN = (
         "detections", "octsim.stages.detections:detections",
         "Trace the sweep over diameters",
         reads=(LIGHT, "sweep"), after=("focus_law",),
-        points=lambda config: (config.sweep.diameters.num, 1), sums=False,
+        points=lambda config: (_rows("rays", config, config.sweep.diameters.num), 1),
+        light="rays", sums=False,
+    ),
+    Stage(
+        "fields", "octsim.stages.fields:fields",
+        "Solve Maxwell's equations for the sweep over diameters",
+        reads=(LIGHT, "sweep"), after=("focus_law",),
+        points=lambda config: (_rows("waves", config, config.sweep.diameters.num), 1),
+        light="waves", sums=False,
     ),
     Stage(
         "spectra", "octsim.stages.spectra:spectra",
-        "Sum the detected rays to spectra",
-        reads=("spectrum", SUMMING), after=("detections",), job="spectra",
+        "Turn the detected light into spectra",
+        reads=("spectrum", SUMMING), after=("detections", "fields"), job="spectra",
         doubts="octsim.stages.spectra:doubts", per_sample=(2e-7, 8.0),
         figures=(
             Figure("figure_8", "octsim.figures.spectra:figure_8",
@@ -158,7 +186,7 @@ _RUN = (
     Stage(
         "paths", "octsim.stages.paths:light_paths",
         "Share their intensity out among the light paths",
-        reads=("spectrum.wavelength",), after=("detections",), job="spectra",
+        reads=("spectrum.wavelength",), after=("detections", "fields"), job="spectra",
         figures=(
             Figure("paths", "octsim.figures.paths:figure_paths",
                    "what each light path has in the spectra"),
@@ -183,7 +211,7 @@ _RUN = (
     Stage(
         "phase_slope", "octsim.stages.phase_slope:phase_slope",
         "Differentiate their phase over the diameter",
-        reads=("processing", "scene.refractive_index.neuron"), after=("fourier",),
+        reads=("processing", "scene"), after=("fourier",),
         job="phase_slope", summary="octsim.stages.phase_slope:summary",
         per_sample=(1e-7, 12.0),  # magnitude, phase and slopes of half as many components
         figures=(

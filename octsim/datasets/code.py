@@ -6,7 +6,7 @@ from octsim.base.provenance import source_digest
 from octsim.config.grid import combinations
 from octsim.config.models import Config
 from octsim.config.scheme import scheme_of
-from octsim.datasets.catalog import CATALOG, LIGHT, SUMMING, Figure
+from octsim.datasets.catalog import CATALOG, LIGHT, RAYS, SUMMING, Figure
 from octsim.schemes.table import COUNTED_RAYS, LIGHT_PATHS, SCHEMES
 
 NO_RESULT = (
@@ -34,7 +34,7 @@ def _schemes(stage: str, config: Config) -> Iterator[str]:
     row = CATALOG[stage]
     if row.beside and row.needs_light:
         yield from (scheme.module for scheme in SCHEMES.values())
-    elif "processing" in row.reads and _compares_with_a_model(config):
+    elif ("processing" in row.reads and _compares_with_a_model(config)) or RAYS in row.reads:
         yield LIGHT_PATHS.module
     elif {LIGHT, SUMMING} & set(row.reads):
         for at in combinations(config, "tracing.scheme", "tracing.preset"):

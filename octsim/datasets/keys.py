@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator, Mapping
 
-from octsim.config.derive import parts_of
+from octsim.config.derive import by_light_paths, parts_of
 from octsim.config.grid import Axis, axes, combinations
 from octsim.config.models import Config
 from octsim.config.scheme import light_keys, scheme_of
-from octsim.datasets.catalog import CATALOG, LIGHT, SUMMING, Stage
+from octsim.datasets.catalog import CATALOG, LIGHT, RAYS, STAGES, SUMMING, Stage
 
 _DECIDING = ("tracing.scheme", "tracing.preset", "sweep.focus")
 """Keys that decide which others are read."""
@@ -28,6 +28,8 @@ def _read(stage: str, config: Config) -> Iterator[str]:
     for key in CATALOG[stage].reads if stage in CATALOG else ():
         if key == LIGHT:
             yield from light_keys(config)
+        elif key == RAYS:
+            yield from light_keys(by_light_paths(config))
         elif key == SUMMING:
             yield from scheme_of(config).summing_keys
         else:
@@ -53,12 +55,31 @@ def needs_law(config: Config) -> bool:
     return any(at.config.sweep.focus == "law" for at in combinations(config, "sweep.focus"))
 
 
+def light_of(config: Config) -> frozenset[str]:
+    """Return the kinds of light that the schemes of all combinations have."""
+    every = combinations(config, "tracing.scheme", "tracing.preset")
+    return frozenset(scheme_of(at.config).light for at in every)
+
+
+def stages_of(config: Config) -> tuple[str, ...]:
+    """Return the datasets of a run: all but those of light that its schemes do not have."""
+    return tuple(name for name in STAGES if _exists(name, config))
+
+
+def _exists(stage: str, config: Config) -> bool:
+    kind = CATALOG[stage].light
+    return not kind or kind in light_of(config)
+
+
 def inputs_of(stage: Stage, config: Config) -> tuple[str, ...]:
     """Return the datasets that a stage is made from, under a config.
 
     A given focus needs no law, and what is traced at it does not change with the law.
     """
-    return tuple(name for name in stage.after if name != "focus_law" or needs_law(config))
+    return tuple(
+        name for name in stage.after
+        if _exists(name, config) and (name != "focus_law" or needs_law(config))
+    )  # fmt: skip
 
 
 def differing(stage: str, config: Config, other: Mapping[str, object]) -> list[str]:

@@ -17,8 +17,11 @@ def figure_7(fits: xr.Dataset, law: xr.Dataset) -> Figure:
     foci, *rests = np.atleast_1d(
         figure.subplots(1 + has_law, sharex=True, height_ratios=(2, 1)[: 1 + has_law])
     )
-    diameter, centre = fits["diameter"], fits["centre"]
-    errors = fits["centre_standard_error"]
+    # the law of a scheme whose intensity has no peak goes through centres of another's
+    own = law if "law_centre" in law else fits
+    of = "law_" if own is law else ""
+    diameter, centre = fits["diameter"], own[f"{of}centre"]
+    errors = own[f"{of}centre_standard_error"]
     points = {"fmt": "o", "color": BLUE, "capsize": 3, "markersize": 4}
     foci.errorbar(diameter, centre, yerr=errors, label="centre ± standard error", **points)
     use = law["centre_use"].values
@@ -44,6 +47,7 @@ def figure_7(fits: xr.Dataset, law: xr.Dataset) -> Figure:
     (rests or [foci])[-1].set_xlabel(label(diameter))
     used = int((use == CentreUse.FITTED_THROUGH).sum())
     lack = "" if has_law else f", none: a peak for {used} of {use.size} diameters only"
-    foci.set_title(title(law, f"Focus law{lack}"))
+    by = f" by scheme {law['law_scheme'].item()}" if own is law else ""
+    foci.set_title(title(law, f"Focus law{by}{lack}"))
     foci.legend()
     return figure

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.base.errors import OctsimError
 from octsim.base.provenance import source_digest
 from octsim.base.threads import each
 from octsim.config.derive import parts_of
@@ -16,7 +17,8 @@ from octsim.instrument.build import optics_of, scene_of
 from octsim.instrument.point_keys import instrument_key
 from octsim.instrument.points import Points
 from octsim.schemes.field_sum import spectrum_of
-from octsim.schemes.light import AccuracyStatus, Light, LightAt
+from octsim.schemes.light import AccuracyStatus, Found, Light, LightAt, Optics
+from octsim.schemes.table import LIGHT_PATHS
 
 
 class PointSpectrum(NamedTuple):
@@ -63,15 +65,31 @@ class Instrument:
 
     def nominal_depth(self, diameter: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the optical depth n_neuron · d of neurons' far sides, µm, for diameters, µm."""
-        return self.config.scene.refractive_index.neuron * diameter
+        return self.config.scene.swept_index * diameter
 
-    def light(self, diameter: float, focus: float) -> Light:
+    def light(self, diameter: float, focus: float) -> Found:
         """Return the detected light of a diameter at a focus, both µm."""
         return self._light_at(diameter, focus)
 
-    def sum(self, light: Light) -> PointSpectrum:
+    def rays(self, diameter: float, focus: float) -> Light:
+        """Return the detected rays of a diameter at a focus, both µm.
+
+        Raises
+        ------
+        OctsimError
+            If the light of this instrument's scheme is none of rays.
+        """
+        light = self.light(diameter, focus)
+        if isinstance(light, Light):
+            return light
+        raise OctsimError(
+            f"tracing.scheme: {self.scheme.name} given, whose light is no rays, which are needed "
+            f"here; give tracing.scheme: {LIGHT_PATHS.name}"
+        )
+
+    def sum(self, light: Found) -> PointSpectrum:
         """Sum light of this instrument to its spectrum."""
-        field = self.scheme.field(light, self.wavenumber, self._options)
+        field = self.scheme.field(light, self.wavenumber, self._optics, self._options)
         return PointSpectrum(*spectrum_of(field), light.status)
 
     def spectrum(self, diameter: float, focus: float) -> PointSpectrum:
@@ -85,7 +103,7 @@ class Instrument:
         points = zip(np.asarray(diameters).tolist(), np.asarray(foci).tolist(), strict=True)
         return np.stack(list(each(lambda at: self.spectrum(*at).intensity, points, threads)))
 
-    def brightness(self, light: Light) -> Brightness:
+    def brightness(self, light: Found) -> Brightness:
         """Return the intensity of light of this instrument, as a mean over the band."""
         intensity, error, status = self.sum(light)
         mean = float(intensity.mean())
@@ -93,14 +111,18 @@ class Instrument:
         return Brightness(mean, relative, status)
 
     @cached_property
-    def _tracer(self) -> LightAt:
-        return self.scheme.tracer(optics_of(self.config), self._options)
+    def _optics(self) -> Optics:
+        return optics_of(self.config)
 
-    def _find(self, diameter: float, focus: float) -> Light:
+    @cached_property
+    def _tracer(self) -> LightAt:
+        return self.scheme.tracer(self._optics, self._options)
+
+    def _find(self, diameter: float, focus: float) -> Found:
         return self._tracer(scene_of(self.config, diameter), focus)
 
     @cached_property
-    def _light_at(self) -> Callable[[float, float], Light]:
+    def _light_at(self) -> Callable[[float, float], Found]:
         if self._points is None:
             return self._find
         return self._points.keeping(self._find, self._key, self.scheme.rate_name(self._options))

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 from octsim.instrument.point_entries import light_from_bytes, light_to_bytes
 from octsim.instrument.point_keys import point_key
-from octsim.schemes.light import Light
+from octsim.schemes.light import Found
 
 if TYPE_CHECKING:
     # a store saves time and decides no result, so that its code is none that results follow from
     from octsim.instrument.point_store import PointStore
 
-LightAtPoint = Callable[[float, float], Light]
+LightAtPoint = Callable[[float, float], Found]
 """From diameter and focus, µm, to detected light."""
 _RECORD_AFTER = 1000  # points
 _NOT_TIMED = 8  # of the first points some may wait for code to be compiled
@@ -48,7 +48,7 @@ class Points:
         store = self._store
         if store is None:
 
-            def found(diameter: float, focus: float) -> Light:
+            def found(diameter: float, focus: float) -> Found:
                 light = find(diameter, focus)
                 self._count()
                 return light
@@ -56,7 +56,7 @@ class Points:
             return found
         instrument = key()
 
-        def at(diameter: float, focus: float) -> Light:
+        def at(diameter: float, focus: float) -> Found:
             key = point_key(instrument, diameter, focus)
             body = store.get(key)
             if body is not None:

@@ -51,7 +51,7 @@ class Plane:
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A cylinder along y with its axis at (x, z), all in µm, between two regions."""
+    """A horizontal cylinder with its axis through (x, 0, z), all in µm, between two regions."""
 
     name: str
     """Short, as it stands in the names of light paths."""
@@ -60,6 +60,8 @@ class Cylinder:
     radius: float
     inside: Region
     outside: Region
+    azimuth: float = 0.0
+    """Angle from the y axis to its axis, (−sin, cos, 0), rad."""
 
     @property
     def sides(self) -> tuple[Region, Region]:
@@ -68,13 +70,24 @@ class Cylinder:
 
     @property
     def row(self) -> tuple[float, ...]:
-        """Its shape in numbers: axis x and z, and radius, µm."""
+        """Its shape in numbers: axis x and z, and radius, µm.
+
+        Raises
+        ------
+        ValueError
+            If it is not along y, as faces have no numbers for another direction.
+        """
+        if self.azimuth:
+            raise ValueError(
+                f"a cylinder at an azimuth of {self.azimuth} rad has no faces for rays"
+            )
         return self.x, self.z, self.radius
 
     @property
     def symmetry(self) -> Symmetry:
         """Its symmetry."""
-        return Symmetry(x=self.x == 0, y=True)
+        along_y = self.azimuth == 0
+        return Symmetry(x=along_y and self.x == 0, y=along_y)
 
 
 Surface = Plane | Cylinder
@@ -112,9 +125,15 @@ NEURON_ON_GLASS = ("P", "C")
 
 
 def neuron_on_glass(
-    glass: Material, water: Material, neuron: Material, gap: float, diameter: float
+    glass: Material,
+    water: Material,
+    neuron: Material,
+    gap: float,
+    diameter: float,
+    x: float = 0.0,
+    azimuth: float = 0.0,
 ) -> Scene:
-    """Return a neuron along y in water, a gap above the glass–water plane z = 0.
+    """Return a neuron in water, a gap above the glass–water plane z = 0.
 
     Parameters
     ----------
@@ -122,6 +141,10 @@ def neuron_on_glass(
         What they are made of.
     gap, diameter : float
         Of the neuron, µm.
+    x : float
+        Where its axis meets the plane y = 0, µm.
+    azimuth : float
+        Angle from the y axis to its axis, rad.
     """
     slide, bath, axon = Region("glass", glass), Region("water", water), Region("neuron", neuron)
     plane, cylinder = NEURON_ON_GLASS
@@ -130,8 +153,6 @@ def neuron_on_glass(
         objective=slide,
         surfaces=(
             Plane(name=plane, height=0.0, below=slide, above=bath),
-            Cylinder(
-                name=cylinder, x=0.0, z=gap + radius, radius=radius, inside=axon, outside=bath
-            ),
+            Cylinder(cylinder, x, gap + radius, radius, inside=axon, outside=bath, azimuth=azimuth),
         ),
     )

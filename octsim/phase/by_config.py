@@ -47,7 +47,7 @@ def estimator_of(config: Config, foci: Array) -> EstimatorOf:
         Foci of all of the sweep's diameters, µm; NaN where there is no law.
     """
     processing, k = config.processing, config.spectrum.wavenumbers()
-    n_neuron = config.scene.refractive_index.neuron
+    n_neuron = config.scene.swept_index
     if processing.estimator == "fft" or np.isnan(foci).any():
         return lambda _, diameter: Phases(*np.full((2, diameter.size), np.nan))
     if processing.estimator != "maximum_likelihood":
@@ -71,7 +71,7 @@ def ideal_phases(config: Config, spectra: Array, diameter: Array, wavenumber: Ar
     fringe's order is counted; NaN where they are not resolved. Maximum likelihood, whose model they
     are not, has the prediction's.
     """
-    n_neuron, processing = config.scene.refractive_index.neuron, config.processing
+    n_neuron, processing = config.scene.swept_index, config.processing
     if processing.estimator == "maximum_likelihood":
         return predicted_phase_slope(n_neuron, wavenumber[0], wavenumber[-1]) * diameter
     depth, found = n_neuron * diameter, np.full(diameter.size, np.nan)

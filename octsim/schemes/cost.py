@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 
 _RAY_BYTES = 32  # of the four numbers that are kept of a ray
 
+_NODE_BYTES = 136  # of a wavenumber, and four complex fields of two polarisations
+
 
 class PointCost(NamedTuple):
     """What the light of one point takes."""
@@ -24,7 +26,7 @@ class PointCost(NamedTuple):
     """Bytes to work in, beyond those of any process."""
 
 
-def of_rays(options: Mapping[str, Any]) -> PointCost:
+def of_rays(options: Mapping[str, Any], _diameter: float) -> PointCost:
     """Return what counted rays take."""
     rays = options["rays"]
     return PointCost(
@@ -33,7 +35,17 @@ def of_rays(options: Mapping[str, Any]) -> PointCost:
     )  # fmt: skip
 
 
-def of_paths(options: Mapping[str, Any]) -> PointCost:
+def of_waves(options: Mapping[str, Any], diameter: float) -> PointCost:
+    """Return what partial waves take that are summed to an accuracy."""
+    digits = -math.log10(options["accuracy"])
+    nodes = 2.5 + 2.8 * diameter + 1.35 * digits
+    return PointCost(
+        size=_NODE_BYTES * nodes, seconds=1.3e-3 * (1 + diameter) ** 2 * (1 + digits), paths=4,
+        memory=3e7 * (1 + diameter) ** 2,
+    )  # fmt: skip
+
+
+def of_paths(options: Mapping[str, Any], _diameter: float) -> PointCost:
     """Return what light paths take that are integrated to an accuracy."""
     digits = -math.log10(options["accuracy"])
     return PointCost(

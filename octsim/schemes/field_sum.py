@@ -94,14 +94,14 @@ def intensity(
 
 
 def intensity_of(values: NDArray[np.complex128]) -> NDArray[np.float64]:
-    """Return the intensity |E|² of a field, (K,)."""
+    """Return the intensity |E|² of a field, of its shape."""
     squared: NDArray[np.float64] = values.real * values.real + values.imag * values.imag
     return squared
 
 
 def spectrum_of(field: Field) -> tuple[NDArray[np.float64], float]:
     """Return the intensity of a field, (K,), and the estimate of max |ΔI| / max I."""
-    squared = intensity_of(field.values)
+    squared: NDArray[np.float64] = intensity_of(field.values).mean(axis=0)
     return squared, relative_error(math.sqrt(float(squared.max())), field.error)
 
 
@@ -121,7 +121,7 @@ def field_of_rays(
     step = (sparse[-1] - sparse[0]) / max(sparse.size - 1, 1)
     off = rough_amplitude - amplitude
     real, imaginary = _field(off, optical_path_length, sparse[0], step, sparse.size)
-    return Field(values, float(np.hypot(real, imaginary).max()))
+    return Field(values[np.newaxis], float(np.hypot(real, imaginary).max()))
 
 
 def field_at(

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.optics.detector import Detector
+from octsim.optics.polarisation import Polarisation
+from octsim.optics.pupil import Pupil
 from octsim.optics.scene import Scene
 
 
@@ -89,6 +91,11 @@ class Waves(NamedTuple):
     """Largest order of the partial waves."""
     status: AccuracyStatus
 
+    @property
+    def segments(self) -> int:
+        """Straight pieces of ray that were traced: none."""
+        return 0
+
 
 TERMS = ("plane", "near_side", "far_side")
 """Parts of a `Waves` field: reflection off the plane, and off the cylinder's near side and far side
@@ -99,7 +106,8 @@ class Field(NamedTuple):
     """The detected field over the wavenumbers, and how sure it is."""
 
     values: NDArray[np.complex128]
-    """Complex field, (K,)."""
+    """Complex fields whose intensities have the detected one as their mean, (C, K): of rays one,
+    of unpolarised light two."""
     error: float
     """Estimate of its error, as a magnitude; the largest over the band."""
 
@@ -113,9 +121,17 @@ class Optics(NamedTuple):
     """Smallest and largest wavenumber, 1/µm."""
     max_intersections: int
     """Surfaces that one ray may meet."""
+    numerical_aperture: float
+    """Of the objective."""
+    pupil: Pupil
+    """What weighs the light over it."""
+    polarisation: Polarisation
+    """What goes in, and what is detected of it."""
 
 
 Options = Mapping[str, Any]
 """Values of a scheme's own keys of the config's section ``tracing``, by their names there."""
-LightAt = Callable[[Scene, float], Light]
+Found = Light | Waves
+"""The light of a point, in the form that its scheme has it."""
+LightAt = Callable[[Scene, float], Found]
 """Returns the detected light of a scene, for a height of the focus, µm."""

@@ -11,17 +11,37 @@ import dataclasses
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from enum import Enum
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from octsim.schemes.cost import PointCost, of_paths, of_rays
+from octsim.schemes.cost import PointCost, of_paths, of_rays, of_waves
 
 if TYPE_CHECKING:
     # the config reads this table, and needs no compiler for it
     import numpy as np
     from numpy.typing import NDArray
 
-    from octsim.schemes.light import Field, Light, LightAt, Optics, Options
+    from octsim.schemes.light import Field, Found, LightAt, Optics, Options
+
+
+class Ability(Enum):
+    """What not every scheme can do of what a config can ask for; its value is a scheme that can't.
+
+    Every scheme does the thesis's: a cylinder on the optical axis, a gap above a slide.
+    """
+
+    PUPIL = "does not weigh the pupil"
+    APLANATIC = "has no apodisation"
+    POLARISATION = "has light of one kind, the thesis's unpolarised one"
+    ATTENUATION = "has no attenuation"
+    LAYERS = "has two layers, of two media"
+    NO_CYLINDER = "needs a cylinder"
+    CYLINDERS = "has one cylinder"
+    OFF_AXIS = "has the cylinder on the optical axis"
+    AZIMUTH = "has the cylinder along y"
+    ELEVATION = "has the cylinder level"
+    SHELLS = "has a cylinder without shells"
 
 
 @dataclass(frozen=True)
@@ -36,28 +56,41 @@ class Scheme:
     """Keys of the section ``tracing`` that its light depends on, besides the instrument's."""
     effort: str
     """The one of them that decides what a point takes."""
-    cost: Callable[[Options], PointCost]
-    """Returns what a point takes, typically; the same on all machines."""
+    cost: Callable[[Options, float], PointCost]
+    """Returns what a point of a diameter (µm) takes, typically; the same on all machines."""
+    light: str = "rays"
+    """What its light is: rays, each with its field, or waves, a field without any."""
     counts_rays: bool = False
     """Whether its light is a number of rays, each of which is counted."""
     controls_error: bool = False
     """Whether it reaches ``tracing.accuracy``, in one band, or says that it does not."""
     steepest: float = math.inf
     """Numerical aperture over the water's index above which it can miss light."""
+    honours: frozenset[Ability] = frozenset()
+    """What it can do beyond the thesis's instrument."""
+    mode_field_diameter: float | None = None
+    """Of the fibre whose mode fills the pupil where a config gives none, µm; else it is even."""
     presets: Mapping[str, Mapping[str, float]] = dataclasses.field(default_factory=dict)
     """Options that a name stands for."""
 
+    instrument: tuple[str, ...] = (
+        "scene", "objective", "detector", "tracing.max_intersections",
+    )  # fmt: skip
+    """Dotted keys of the instrument that its light depends on."""
+
     @property
     def keys(self) -> tuple[str, ...]:
-        """Dotted keys of the config that its light depends on, besides the instrument's."""
+        """Dotted keys of the config that its light depends on."""
         # an accuracy is one in a band; rays that are counted serve any
         band = ("spectrum.wavelength",) if self.controls_error else ()
-        return (*(f"tracing.{name}" for name in self.options), *band)
+        own = (f"tracing.{name}" for name in self.options)
+        return (*self.instrument, "tracing.scheme", *own, *band)
 
     @property
     def summing_keys(self) -> tuple[str, ...]:
         """Dotted keys, besides the spectrum's, that its field over the wavenumbers depends on."""
-        return ("tracing.accuracy",) if self.controls_error else ()
+        accuracy = ("tracing.accuracy",) if self.controls_error else ()
+        return (*accuracy, "polarisation") if Ability.POLARISATION in self.honours else accuracy
 
     def chosen(self, tracing: object) -> Options:
         """Return the values that a section ``tracing`` has for the scheme's options."""
@@ -68,9 +101,11 @@ class Scheme:
         found: LightAt = self._functions.tracer(optics, options)
         return found
 
-    def field(self, light: Light, wavenumber: NDArray[np.float64], options: Options) -> Field:
+    def field(
+        self, light: Found, wavenumber: NDArray[np.float64], optics: Optics, options: Options
+    ) -> Field:
         """Return the field of some light at evenly spaced wavenumbers (K,), 1/µm."""
-        found: Field = self._functions.field(light, wavenumber, options)
+        found: Field = self._functions.field(light, wavenumber, optics, options)
         return found
 
     def rate_name(self, options: Options) -> str:
@@ -106,7 +141,30 @@ LIGHT_PATHS = Scheme(
 )  # fmt: skip
 """Each light path integrated over the aperture, to a stated accuracy."""
 
-SCHEMES: Mapping[str, Scheme] = {row.name: row for row in (COUNTED_RAYS, LIGHT_PATHS)}
+FULL_WAVE = Scheme(
+    name="fullwave",
+    module="octsim.schemes.fullwave.scheme",
+    options=("accuracy",),
+    effort="accuracy",
+    cost=of_waves,
+    light="waves",
+    controls_error=True,
+    honours=frozenset(
+        {
+            Ability.PUPIL, Ability.APLANATIC, Ability.POLARISATION, Ability.OFF_AXIS,
+            Ability.AZIMUTH,
+        }
+    ),
+    mode_field_diameter=5.0,
+    instrument=(
+        "scene", "objective.numerical_aperture", "objective.magnification", "objective.pupil",
+        "objective.apodisation",
+    ),
+    presets={"exact": {"accuracy": 1e-4}},
+)  # fmt: skip
+"""Maxwell's equations solved in partial waves about the cylinder, to a stated accuracy."""
+
+SCHEMES: Mapping[str, Scheme] = {row.name: row for row in (COUNTED_RAYS, LIGHT_PATHS, FULL_WAVE)}
 """Every scheme by its name; the first is the thesis's."""
 PRESETS: Mapping[str, Mapping[str, Any]] = {
     name: {"scheme": row.name, **options}

@@ -49,7 +49,9 @@ def tracer(optics: Optics, options: Options) -> LightAt:
     return light_at
 
 
-def field(light: Light, wavenumber: NDArray[np.float64], _options: Options) -> Field:
+def field(
+    light: Light, wavenumber: NDArray[np.float64], _optics: Optics, _options: Options
+) -> Field:
     """Return the field of the detected rays, summed one by one."""
     return field_of_rays(
         light.amplitude, light.rough_amplitude, light.optical_path_length, wavenumber

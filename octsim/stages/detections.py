@@ -1,27 +1,23 @@
-"""The sweep over diameters: the light that reaches the detector."""
+"""The sweep over diameters: the rays that reach the detector."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.base.errors import OctsimError
-from octsim.base.threads import each_block
 from octsim.config.grid import Combination, combinations
-from octsim.config.models import Config, FocusLine
+from octsim.config.models import Config
 from octsim.config.scheme import scheme_of
 from octsim.datasets.files import flags
 from octsim.datasets.layout import Coordinate, Layout, filling
-from octsim.datasets.reader import Stored
-from octsim.datasets.streams import Part, Stream, Streamed
-from octsim.instrument.instrument import Instrument
-from octsim.instrument.points import LightAtPoint, Points
+from octsim.datasets.streams import Stream, Streamed
+from octsim.instrument.points import Points
 from octsim.optics.detector import Outcome
 from octsim.schemes.light import AccuracyStatus, Light
-from octsim.stages.focus_law import sweep_foci
 from octsim.stages.scatter import WHOLE, Share
+from octsim.stages.swept_light import swept_diameters, swept_light
 
 RAYS: Mapping[str, str] = {
     "path_code": "path",
@@ -30,6 +26,8 @@ RAYS: Mapping[str, str] = {
     "optical_path_length": "optical_path_length",
 }
 """What is stored of each ray, and its name in `Light`."""
+_NONE = np.empty(0)
+_NOTHING = Light(_NONE.astype(np.int64), _NONE, _NONE, _NONE, 0.0, 0, AccuracyStatus.NO_FOCUS)
 
 
 @Streamed
@@ -55,59 +53,19 @@ def detections(
     counted = any(scheme_of(at.config).counts_rays for at in schemes)
 
     def own(config: Config) -> dict[str, Coordinate]:
-        swept = {"diameter": ("diameter", config.sweep.diameters.values())}
-        return swept | ({"outcome": named} if counted else {})
+        return swept_diameters(config) | ({"outcome": named} if counted else {})
+
+    def variables_of(found: Sequence[Light], _: Combination) -> dict[str, Any]:
+        outcomes = {"outcomes": (("diameter", "outcome"), _outcomes(found))} if counted else {}
+        return _light_variables(found) | outcomes
 
     title = "Rays that reach the detector, for each diameter"
     layout = Layout("detections", config, title, own, "diameter")
-    return Stream(layout, _detected(layout, law, points or Points(), threads, share))
+    parts = swept_light(layout, law, points or Points(), threads, share, _NOTHING, variables_of)
+    return Stream(layout, parts)
 
 
-def _detected(
-    layout: Layout, law: xr.Dataset | None, points: Points, threads: int, share: Share
-) -> Iterator[Part]:
-    focus = _foci(layout, law)
-
-    def points_of(block: tuple[Combination, slice]) -> Iterator[tuple[LightAtPoint, float, float]]:
-        at, span = block
-        heights = focus[at.position][span]
-        dark = np.isnan(heights).all()
-        light_at = _untraced if dark else Instrument(at.config, points).light
-        diameters = layout.own[at.position]["diameter"][1][span]
-        return ((light_at, d, z) for d, z in zip(diameters.tolist(), heights.tolist(), strict=True))
-
-    blocks = share.blocks(layout)
-    for (at, span), found in each_block(lambda p: p[0](p[1], p[2]), blocks, points_of, threads):
-        variables = _light_variables(found, focus[at.position][span])
-        if "outcome" in layout.own[at.position]:
-            variables["outcomes"] = ("diameter", "outcome"), _outcomes(found)
-        yield Part(at, span.start, len(found), variables)
-
-
-def _foci(layout: Layout, law: xr.Dataset | None) -> dict[tuple[int, ...], NDArray[np.float64]]:
-    """Return the foci of each combination; NaN where it has no law, unless none has one."""
-    stored = Stored(law, "focus_law", layout.config) if law is not None else None
-    focus: dict[tuple[int, ...], NDArray[np.float64]] = {}
-    failed: list[str] = []
-    for at in layout.combinations:
-        given = isinstance(at.config.sweep.focus, FocusLine)
-        try:
-            found = sweep_foci(at.config, None if given or stored is None else stored.part(at))
-        except OctsimError as error:
-            failed.append(f"{error} (at {at})" if at.values else str(error))
-            found = np.full(layout.count(at), np.nan)
-        focus[at.position] = found
-    if len(failed) == len(layout.combinations):
-        raise OctsimError(failed[0])
-    return focus
-
-
-def _untraced(_diameter: float, _focus: float) -> Light:
-    none = np.empty(0)
-    return Light(none.astype(np.int64), none, none, none, 0.0, 0, AccuracyStatus.NO_FOCUS)
-
-
-def _light_variables(found: list[Light], focus: NDArray[np.float64]) -> dict[str, Any]:
+def _light_variables(found: Sequence[Light]) -> dict[str, Any]:
     counts = np.array([light.amplitude.size for light in found])
     status = np.array([light.status for light in found])
     return {
@@ -119,11 +77,10 @@ def _light_variables(found: list[Light], focus: NDArray[np.float64]) -> dict[str
         "segments_traced": ("diameter", np.array([light.segments for light in found])),
         "missing_field": ("diameter", np.array([light.missing for light in found])),
         "accuracy_status": ("diameter", *flags(AccuracyStatus, status)),
-        "focus": ("diameter", focus),
     }
 
 
-def _outcomes(found: list[Light]) -> NDArray[np.int64]:
+def _outcomes(found: Sequence[Light]) -> NDArray[np.int64]:
     none = np.full(len(Outcome), filling(np.dtype(np.int64)))
     return np.stack([none if light.outcomes is None else light.outcomes for light in found])
 

@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 from octsim.base.errors import OctsimError, OctsimWarning
 from octsim.config.grid import Combination
 from octsim.config.models import Config, FocusLine
+from octsim.config.scheme import scheme_of
 from octsim.datasets.files import flags
 from octsim.datasets.layout import Layout
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
+from octsim.schemes.table import LIGHT_PATHS
 from octsim.stages.centres import FEWEST, CentreUse, doubts, failures, remedy, use_of
-from octsim.stages.gaussian_fits import FitStatus, law_diameters
+from octsim.stages.gaussian_fits import FitStatus, fitted, law_diameters
 
 
 class Line(NamedTuple):
@@ -39,15 +41,29 @@ def fit_line(x: NDArray[np.float64], y: NDArray[np.float64]) -> Line:
 
 
 @Streamed
-def focus_law(config: Config, fits: xr.Dataset) -> Stream:
+def focus_law(
+    config: Config, fits: xr.Dataset, ray_focus_sweep: xr.Dataset | None = None
+) -> Stream:
     """Fit a straight line through the fitted centres (figure 7).
+
+    By Maxwell's equations the intensity mostly has no peak over the fractions. The law of a scheme
+    without rays is therefore that of the light paths, as law_scheme says.
+
+    Parameters
+    ----------
+    config : Config
+        The run.
+    fits : Dataset
+        Of the stage gaussian_fits.
+    ray_focus_sweep : Dataset, optional
+        Of the stage ray_focus_sweep, where a run has it.
 
     Returns
     -------
     Dataset
         slope, intercept and their standard errors, NaN if there are fewer than three centres to
         fit; status and brightest focus of the fits, and centre_use, whether the line is fitted to
-        each and why not (diameter).
+        each and why not (diameter); law_scheme, the scheme of the intensities.
 
     Warns
     -----
@@ -57,9 +73,26 @@ def focus_law(config: Config, fits: xr.Dataset) -> Stream:
     title = "Focus of greatest intensity as a linear function of the diameter"
     layout = Layout("focus_law", config, title, law_diameters)
     stored = Stored(fits, "gaussian_fits", config, layout)
+    by_rays = (
+        None
+        if ray_focus_sweep is None
+        else Stored(ray_focus_sweep, "ray_focus_sweep", config, layout)
+    )
+
+    def fits_at(at: Combination) -> tuple[str, xr.Dataset]:
+        scheme = scheme_of(at.config)
+        if scheme.light == "rays":
+            return scheme.name, stored.part(at)
+        if by_rays is None:
+            raise OctsimError(
+                f"ray_focus_sweep: not given, but tracing.scheme: {scheme.name} follows the focus "
+                "law of light paths; pass octsim.ray_focus_sweep(config)"
+            )
+        sweep = by_rays.part(at)
+        return LIGHT_PATHS.name, xr.Dataset(fitted(sweep), {"diameter": sweep["diameter"]})
 
     def line(at: Combination) -> dict[str, object]:
-        part = stored.part(at)
+        scheme, part = fits_at(at)
         diameter, centre = part["diameter"].values, part["centre"].values
         use = use_of(diameter, centre, part["width"].values)
         used = use == CentreUse.FITTED_THROUGH
@@ -70,7 +103,11 @@ def focus_law(config: Config, fits: xr.Dataset) -> Stream:
             "status": ("diameter", *flags(FitStatus, part["status"].values)),
             "centre_use": ("diameter", *flags(CentreUse, use)),
             "brightest_focus": ("diameter", part["brightest_focus"].values),
+            "law_scheme": ((), scheme),
         }
+        if scheme != at.config.tracing.scheme:
+            for name in ("centre", "centre_standard_error"):
+                own[f"law_{name}"] = ("diameter", part[name].values)
         for doubt in doubts(xr.Dataset(own, {"diameter": diameter})):
             warnings.warn(doubt, OctsimWarning, stacklevel=2)
         return own

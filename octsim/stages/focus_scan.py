@@ -26,9 +26,9 @@ class _Scanner:
         self._counting = self._instrument if counts else Instrument(counting_rays(config), points)
 
     def __call__(self, diameter: float, focus: float) -> tuple[Brightness, int]:
-        light = self._instrument.light(diameter, focus)
+        counted = self._counting.rays(diameter, focus)
         same = self._counting is self._instrument
-        counted = light if same else self._counting.light(diameter, focus)
+        light = counted if same else self._instrument.light(diameter, focus)
         return self._instrument.brightness(light), counted.amplitude.size
 
 

@@ -1,12 +1,13 @@
 """The intensity over the focus, for the diameters of the focus law."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from octsim.base.threads import each_block
+from octsim.config.derive import by_light_paths
 from octsim.config.grid import Combination
 from octsim.config.models import Config
 from octsim.datasets.files import flags
@@ -41,27 +42,49 @@ def focus_sweep(
     Dataset
         intensity, its estimated error and whether that is as asked, focus (diameter, fraction).
     """
-
-    def own(config: Config) -> dict[str, Coordinate]:
-        law = config.focus_law
-        return {
-            "diameter": ("diameter", law.diameters.values()),
-            "fraction": ("fraction", law.fraction.values()),
-        }
-
     title = "Intensity over the focus, for the diameters of the focus law"
-    layout = Layout("focus_sweep", config, title, own, "diameter")
-    return Stream(layout, _swept(layout, points or Points(), threads, share))
+    layout = Layout("focus_sweep", config, title, _own, "diameter")
+    return Stream(layout, _swept(layout, lambda of: of, points or Points(), threads, share))
 
 
-def _swept(layout: Layout, points: Points, threads: int, share: Share) -> Iterator[Part]:
+@Streamed
+def ray_focus_sweep(
+    config: Config, threads: int = 1, points: Points | None = None, share: Share = WHOLE
+) -> Stream:
+    """Measure the same by light paths, for a scheme whose intensity has no peak over the focus.
+
+    Returns
+    -------
+    Dataset
+        As that of `focus_sweep`, by scheme paths, for combinations of schemes without rays.
+    """
+    title = "Intensity over the focus by light paths, for the focus law of a scheme without rays"
+    layout = Layout("ray_focus_sweep", config, title, _own, "diameter")
+    return Stream(layout, _swept(layout, by_light_paths, points or Points(), threads, share))
+
+
+def _own(config: Config) -> dict[str, Coordinate]:
+    law = config.focus_law
+    return {
+        "diameter": ("diameter", law.diameters.values()),
+        "fraction": ("fraction", law.fraction.values()),
+    }
+
+
+def _swept(
+    layout: Layout,
+    seen_by: Callable[[Config], Config],
+    points: Points,
+    threads: int,
+    share: Share,
+) -> Iterator[Part]:
     def foci(at: Combination, span: slice) -> NDArray[np.float64]:
         own = layout.own[at.position]
         return np.outer(own["diameter"][1][span], own["fraction"][1])
 
     def points_of(block: tuple[Combination, slice]) -> Iterator[tuple[Instrument, float, float]]:
         at, span = block
-        instrument = Instrument(at.config, points)
+        instrument = Instrument(seen_by(at.config), points)
         diameters = layout.own[at.position]["diameter"][1][span].tolist()
         for diameter, row in zip(diameters, foci(at, span).tolist(), strict=True):
             yield from ((instrument, diameter, focus) for focus in row)

@@ -239,7 +239,7 @@ def gaussian_fits(config: Config, sweep: xr.Dataset) -> Stream:
     stored = Stored(sweep, "focus_sweep", config, layout)
     return Stream(
         layout,
-        (Part(at, 0, 1, _fitted(stored.part(at))) for at in layout.combinations),
+        (Part(at, 0, 1, fitted(stored.part(at))) for at in layout.combinations),
     )
 
 
@@ -248,7 +248,8 @@ def law_diameters(config: Config) -> dict[str, Coordinate]:
     return {"diameter": ("diameter", config.focus_law.diameters.values())}
 
 
-def _fitted(sweep: xr.Dataset) -> dict[str, object]:
+def fitted(sweep: xr.Dataset) -> dict[str, object]:
+    """Return the variables of the fits to one combination's intensities over the focus."""
     fits = [
         fit_gaussian(focus, intensity)
         for focus, intensity in zip(sweep["focus"].values, sweep["intensity"].values, strict=True)

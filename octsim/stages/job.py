@@ -6,7 +6,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from octsim.base.named import called, named
+from octsim.base.named import called, named, names
 from octsim.config.grid import without_grid
 from octsim.config.models import Config
 from octsim.datasets.catalog import Stage
@@ -86,11 +86,12 @@ def _make(
     work, output = named(row.make), job.outputs[row.name]
     if isinstance(work, Streamed):
         with ExitStack() as stack:
-            sources = [
-                stack.enter_context(opened(files[name], name, config)) if name in files else None
+            sources = {
+                name: stack.enter_context(opened(files[name], name, config))
                 for name in row.after
-            ]
-            _stream(work, job, config, sources, points, output)
+                if name in files
+            }
+            _stream(row, work, job, config, sources, points)
         return
     single = without_grid(config, row.name)
     tables = [read(files[name], name, single) if name in files else None for name in row.after]
@@ -99,13 +100,17 @@ def _make(
 
 
 def _stream(
-    work: Streamed[Any], job: Job, config: Config, sources: list[Any], points: "Points | None",
-    output: Path,
+    row: Stage, work: Streamed[Any], job: Job, config: Config, sources: Mapping[str, Any],
+    points: "Points | None",
 ) -> None:  # fmt: skip
     """Write a dataset part by part, or a share of its parts, or gather them from all shares."""
+    output = job.outputs[row.name]
+    # a source is a keyword where the function has its name; of two kinds of light one is there
+    in_order = [sources.get(name) for name in row.after if not names(work.stream, name)]
     stream = called(
-        work.stream, config, *sources, threads=job.threads, points=points, share=job.share
-    )
+        work.stream, config, *in_order, **sources, threads=job.threads, points=points,
+        share=job.share,
+    )  # fmt: skip
     if job.shares:
         write_stream(gathered(stream, job.shares), output)
     elif job.share != WHOLE and points:

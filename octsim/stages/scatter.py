@@ -38,7 +38,9 @@ class Share(NamedTuple):
         """Return this share's blocks of a stage that traces."""
         stage = layout.stage
         every = layout.blocks(lambda config: work_of(stage, config).together)
-        return self.among(every, lambda config: work_of(stage, config).seconds)
+        # of a grid over schemes, a stage has the light of some
+        own = (block for block in every if work_of(stage, block[0].config).points)
+        return self.among(own, lambda config: work_of(stage, config).seconds)
 
     def among(self, blocks: Iterable[Block], seconds: Callable[[Config], float]) -> list[Block]:
         """Return the blocks of this share: neighbours, and about as much to trace as any other's.

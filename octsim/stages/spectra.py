@@ -1,6 +1,6 @@
-"""Spectra: the detected light of each diameter, summed over the wavenumbers (figure 8)."""
+"""Spectra: the detected light of each diameter over the wavenumbers (figure 8)."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 import xarray as xr
@@ -8,21 +8,38 @@ import xarray as xr
 from octsim.base.threads import each_block
 from octsim.config.grid import Combination
 from octsim.config.models import Config
+from octsim.config.scheme import scheme_of
 from octsim.datasets.files import flags
 from octsim.datasets.layout import Coordinate, Layout, filling
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.instrument.instrument import Instrument
-from octsim.schemes.light import AccuracyStatus, Light
-from octsim.stages.detections import stored_light
+from octsim.schemes.light import AccuracyStatus, Found
+from octsim.stages.kept_light import lights_in, stored_by_kind
 from octsim.stages.workload import point_cost, points_per_block
 
 _ROUGH = 0.1  # of the largest intensity; an error that a slope does not survive
 
 
 @Streamed
-def spectra(config: Config, detected: xr.Dataset, threads: int = 1) -> Stream:
-    """Sum the detected rays of each diameter to a spectrum.
+def spectra(
+    config: Config,
+    detected: xr.Dataset | None = None,
+    threads: int = 1,
+    fields: xr.Dataset | None = None,
+) -> Stream:
+    """Turn the detected light of each diameter into a spectrum.
+
+    Parameters
+    ----------
+    config : Config
+        The run.
+    detected : Dataset
+        Of the stage detections, where the run has it.
+    threads : int
+        How many sum at the same time.
+    fields : Dataset
+        Of the stage fields, where the run has it.
 
     Returns
     -------
@@ -39,18 +56,20 @@ def spectra(config: Config, detected: xr.Dataset, threads: int = 1) -> Stream:
 
     title = "Spectrum of the detected light, for each diameter"
     layout = Layout("spectra", config, title, own, "diameter")
-    return Stream(layout, _summed(layout, Stored(detected, "detections", config, layout), threads))
+    stored = stored_by_kind(layout, detected, fields)
+    return Stream(layout, _summed(layout, stored, threads))
 
 
-def _summed(layout: Layout, stored: Stored, threads: int) -> Iterator[Part]:
+def _summed(layout: Layout, stored: Mapping[str, Stored], threads: int) -> Iterator[Part]:
     parts: dict[int, xr.Dataset] = {}
 
-    def points_of(block: tuple[Combination, slice]) -> Iterator[tuple[Instrument, Light]]:
+    def points_of(block: tuple[Combination, slice]) -> Iterator[tuple[Instrument, Found]]:
         at, span = block
-        part = stored.part(at, span)
+        kind = scheme_of(at.config).light
+        part = stored[kind].part(at, span)
         parts[id(block)] = part[["accuracy_status", "focus"]]
         instrument = Instrument(at.config)
-        return ((instrument, light) for light in stored_light(part))
+        return ((instrument, light) for light in lights_in(part, kind))
 
     def most(config: Config) -> int:
         return points_per_block(8 * config.spectrum.samples + point_cost(config).size)

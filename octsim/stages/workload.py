@@ -33,7 +33,7 @@ def point_cost(config: Config) -> PointCost:
     The rates are the scheme's own, measured on one machine; what they decide, the size of blocks,
     is to be the same on all.
     """
-    return scheme_of(config).cost(options_of(config))
+    return scheme_of(config).cost(options_of(config), config.sweep.diameters.stop)
 
 
 class Work(NamedTuple):

@@ -16,7 +16,7 @@ from octsim.config.load import load_config
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.point_entries import light_from_bytes, light_to_bytes
 from octsim.instrument.point_keys import instrument_key, point_key
-from octsim.schemes.light import AccuracyStatus, Light
+from octsim.schemes.light import AccuracyStatus, Found, Light, Waves
 
 LONG = st.integers(-(2**63), 2**63 - 1)
 
@@ -36,7 +36,7 @@ def lights(draw: st.DrawFn) -> Light:
     )
 
 
-def bits(light: Light) -> list[object]:
+def bits(light: Found) -> list[object]:
     """Give all that light holds, so that NaN is NaN and −0 is not 0."""
     return [
         value.tobytes() if isinstance(value, np.ndarray)
@@ -45,8 +45,20 @@ def bits(light: Light) -> list[object]:
     ]  # fmt: skip
 
 
-@given(lights())
-def test_light_comes_back_to_the_bit(light: Light) -> None:
+@st.composite
+def waves(draw: st.DrawFn) -> Waves:
+    nodes = draw(st.integers(0, 5))
+    return Waves(
+        draw(arrays(np.float64, nodes)),
+        draw(arrays(np.complex128, (2, nodes))),
+        draw(arrays(np.complex128, (3, 2, nodes))),
+        draw(st.floats()), draw(st.floats()), draw(st.floats()), draw(LONG),
+        draw(st.sampled_from(AccuracyStatus)),
+    )  # fmt: skip
+
+
+@given(lights() | waves())
+def test_light_comes_back_to_the_bit(light: Found) -> None:
     again = light_from_bytes(light_to_bytes(light))
     assert bits(again) == bits(light)
     assert [type(value) for value in again] == [type(value) for value in light]
@@ -57,8 +69,8 @@ def test_light_comes_back_to_the_bit(light: Light) -> None:
             assert one.flags.writeable
 
 
-@given(lights(), st.data())
-def test_bytes_of_another_length_are_refused(light: Light, data: st.DataObject) -> None:
+@given(lights() | waves(), st.data())
+def test_bytes_of_another_length_are_refused(light: Found, data: st.DataObject) -> None:
     body = light_to_bytes(light)
     size = data.draw(st.integers(0, len(body) - 1))
     for wrong in (body[:size], body + b"\0", body + bytes(8)):
@@ -84,7 +96,7 @@ def test_arrays_of_different_lengths_are_refused() -> None:
 
 def test_kept_light_sums_to_the_same_spectrum() -> None:
     config = load_config({"tracing": {"rays": 300}, "spectrum": {"samples": 50}})
-    light = Instrument(config).light(1.4, 0.9)
+    light = Instrument(config).rays(1.4, 0.9)
     assert light.amplitude.size > 0
     spectrum, error, _ = Instrument(config).sum(light)
     again, error_again, _ = Instrument(config).sum(light_from_bytes(light_to_bytes(light)))

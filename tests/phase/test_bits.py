@@ -18,8 +18,8 @@ from octsim.phase.estimators.likelihood import Model, maximum_likelihood
 from octsim.phase.slopes import phase_slopes, slope_of
 from octsim.phase.transform import fourier_components
 from octsim.schemes.light import AccuracyStatus, Light
-from octsim.stages import paths as shares
 from octsim.stages.gaussian_fits import fit_gaussian
+from octsim.stages.ray_shares import ray_shares
 
 Array = NDArray[np.float64]
 Function = Callable[[Array, Array], tuple[NDArray[Any], ...]]
@@ -174,9 +174,7 @@ def test_a_path_has_its_own_bits_beside_whichever_others_the_other_spectra_have(
     def found(codes: list[int]) -> dict[str, NDArray[Any]]:
         """Share the light among paths that are listed in some order, as the strongest first."""
         listed = np.array(codes)
-        order = np.argsort(listed)
-        row = order[np.searchsorted(listed, path, sorter=order)]
-        given = shares._shares(light, row, order, 7.2, 0.024)
+        given = ray_shares(light, listed, 7.2, 0.024)
         return {
             name: values[[codes.index(code) for code in (4, 9, 17, 30, 31)]]
             for name, values in given.items()

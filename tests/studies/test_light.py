@@ -10,7 +10,7 @@ import xarray as xr
 import octsim
 from octsim.config.load import load_config
 from octsim.instrument.points import LightAtPoint, Points
-from octsim.schemes.light import Light
+from octsim.schemes.light import Found
 from octsim.studies.calibration import round_trips
 from octsim.studies.causes.study import causes
 from octsim.studies.estimators.study import estimators
@@ -37,14 +37,14 @@ MEASURED_ANEW = {"cpu_seconds", "peak_memory", "estimator_seconds", "phase_slope
 class Remembered(Points):
     """Points that are kept in memory, by instrument and place."""
 
-    def __init__(self, memory: dict[tuple[bytes, float, float], Light]) -> None:
+    def __init__(self, memory: dict[tuple[bytes, float, float], Found]) -> None:
         super().__init__()
         self.memory = memory
 
     def keeping(self, find: LightAtPoint, key: Callable[[], bytes], rate: str) -> LightAtPoint:
         instrument, found_anew = key(), super().keeping(find, key, rate)
 
-        def at(diameter: float, focus: float) -> Light:
+        def at(diameter: float, focus: float) -> Found:
             place = instrument, float(diameter), float(focus)
             if place in self.memory:
                 self.from_cache += 1
@@ -78,7 +78,7 @@ def test_a_study_s_light_is_kept_and_comes_back_to_the_bit(
     study: Callable[..., xr.Dataset], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(round_trips, "TRIALS", 3)
-    kept: dict[tuple[bytes, float, float], Light] = {}
+    kept: dict[tuple[bytes, float, float], Found] = {}
     first, again = Remembered(kept), Remembered(kept)
     traced, known = study(points=first), study(points=again)
     assert first.traced == len(kept) > 0

@@ -204,7 +204,7 @@ def field_of_paths(
         first_ray, amplitude, rough_amplitude, optical_path_length, wavenumber[0], step, num,
         tolerance,
     )  # fmt: skip
-    return Field(real + 1j * imaginary, error + missing)
+    return Field((real + 1j * imaginary)[np.newaxis], error + missing)
 
 
 def _scale(first_ray: NDArray[np.int64], amplitude: NDArray[np.float64]) -> float:

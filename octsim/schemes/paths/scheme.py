@@ -28,7 +28,9 @@ def tracer(optics: Optics, options: Options) -> LightAt:
     return light_at
 
 
-def field(light: Light, wavenumber: NDArray[np.float64], options: Options) -> Field:
+def field(
+    light: Light, wavenumber: NDArray[np.float64], _optics: Optics, options: Options
+) -> Field:
     """Return the field of all light paths, each interpolated in k about its mean path."""
     return field_of_paths(
         light.path, light.amplitude, light.rough_amplitude, light.optical_path_length,

@@ -163,7 +163,7 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
 
     slope = phase_slope(fixed, bench.processing)
     sensitivities = [change(bench.varied[name], pairs) for name, pairs in varied.items()]
-    by_side = side_slopes(own.light, diameter, focus, float((k[0] + k[-1]) / 2), step)
+    by_side = side_slopes(own.rays, diameter, focus, float((k[0] + k[-1]) / 2), step)
     return {
         **{f"{side}_side_phase_slope": of_side for side, of_side in by_side.items()},
         "fixed_focus_phase_slope": slope.value,

@@ -136,9 +136,7 @@ def _variables(config: Config, diameters: Array, rows: Sequence[dict[str, Any]])
         },
         "budget": (("diameter", "parameter"), budget),
         "budget_error": (("diameter", "parameter"), sensitivity_error * tolerance),
-        "predicted_phase_slope": predicted_phase_slope(
-            config.scene.refractive_index.neuron, k[0], k[-1]
-        ),
+        "predicted_phase_slope": predicted_phase_slope(config.scene.swept_index, k[0], k[-1]),
     }
 
 

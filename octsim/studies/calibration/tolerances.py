@@ -1,11 +1,12 @@
 """What of the instrument and the neuron may differ from what is believed, and how it is moved."""
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from octsim.config.derive import changed, nested, part_of
+from octsim.config.grid import value_at
 from octsim.config.models import Config
 from octsim.config.units import format_length
 from octsim.instrument.build import detector_of
@@ -38,9 +39,9 @@ PARAMETERS: Mapping[str, Parameter] = {
     # of the neuron at rest: the focus is looked for by the greatest intensity, so it goes with it
     "diameter": Parameter(2e-3),
     "gap": Parameter(1e-3, "scene.gap", least=0.0),
-    "glass": Parameter(1e-3, "scene.refractive_index.glass", least=1.0, most=10.0),
-    "water": Parameter(1e-3, "scene.refractive_index.water", least=1.0, most=10.0),
-    "neuron": Parameter(1e-3, "scene.refractive_index.neuron", least=1.0, most=10.0),
+    "glass": Parameter(1e-3, "scene.refractive_index", least=1.0, most=10.0),
+    "water": Parameter(1e-3, "scene.refractive_index", least=1.0, most=10.0),
+    "neuron": Parameter(1e-3, "scene.refractive_index", least=1.0, most=10.0),
     "focus": Parameter(4e-3),
     "numerical_aperture": Parameter(3e-3, "objective.numerical_aperture", least=_LEAST_NA),
     "detector_radius": Parameter(1e-3, "detector.core_diameter"),
@@ -56,10 +57,19 @@ def value_of(config: Config, name: str) -> float:
     """Return what a parameter is in a config; 0 for what is no part of one."""
     if name == "detector_radius":
         return detector_of(config).radius
-    part: Any = config
-    for key in PARAMETERS[name].key.split(".") if PARAMETERS[name].key else ():
-        part = getattr(part, key)
-    return 0.0 if part is config else float(part)
+    key = _key(config, name)
+    return float(value_at(config, key)) if key else 0.0
+
+
+def _key(config: Config, name: str) -> str:
+    """Return the key of a parameter: of an index and of a gap what the config's scene calls it."""
+    scene = config.scene
+    media = {
+        "glass": scene.objective_medium, "water": scene.host_medium, "neuron": scene.swept_medium,
+    }  # fmt: skip
+    if name in media:
+        return f"scene.refractive_index.{media[name]}"
+    return scene.swept_gap_key if name == "gap" else PARAMETERS[name].key
 
 
 def offsets_of(config: Config, name: str) -> Array:
@@ -70,7 +80,7 @@ def offsets_of(config: Config, name: str) -> Array:
 def limits(config: Config, name: str) -> tuple[float, float]:
     """Return the least and the most that a parameter may be, with the others within theirs."""
     least, most = PARAMETERS[name].least, PARAMETERS[name].most
-    glass, aperture = config.scene.refractive_index.glass, config.objective.numerical_aperture
+    glass, aperture = config.scene.objective_index, config.objective.numerical_aperture
     if name == "glass":
         least = max(least, (glass + aperture) / 2)
     if name == "numerical_aperture":
@@ -87,7 +97,7 @@ def moved(config: Config, changes: Mapping[str, float], law_slope: float) -> Pla
     focus = law_slope * diameter + changes.get("focus", 0.0)
     data, overlay = config.to_dict(), {}
     for name, by in changes.items():
-        key, least = PARAMETERS[name].key, PARAMETERS[name].least
+        key, least = _key(config, name), PARAMETERS[name].least
         value = max(least, value_of(config, name) + by)  # whatever the last digit is rounded to
         if name == "detector_radius":
             value *= 2 * config.objective.magnification

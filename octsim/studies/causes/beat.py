@@ -95,7 +95,7 @@ def fields_at(
     """
 
     def at(place: tuple[float, float]) -> NDArray[np.complex128]:
-        return _summed(instrument.light(*place), instrument.wavenumber)
+        return _summed(instrument.rays(*place), instrument.wavenumber)
 
     places = zip(diameters.tolist(), foci.tolist(), strict=True)
     fields = Fields(*np.stack(list(each(at, places, threads)), axis=1))

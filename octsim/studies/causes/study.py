@@ -87,7 +87,7 @@ def causes(
     run, converged = (Instrument(one, points) for one in (config, by_accuracy(config, _ACCURACY)))
     diameter = config.sweep.diameters.values()
     spectra = MovedSpectra(run, converged, line, diameter, threads)
-    k, n_neuron = run.wavenumber, config.scene.refractive_index.neuron
+    k, n_neuron = run.wavenumber, config.scene.swept_index
     steps = _steps(diameter, aliasing_step(n_neuron, k[0], k[-1]))
     reading = Reading(config.processing, n_neuron, diameter, k)
     values = every_slope(spectra.chosen, reading)

@@ -92,7 +92,7 @@ def estimators(
     by_paths = Instrument(by_accuracy(config, MODEL_ACCURACY), points)
     counted = Instrument(by_rays(config, config.tracing.rays), points)
     compared = contenders(config)
-    band = Band(config.scene.refractive_index.neuron, by_paths.wavenumber)
+    band = Band(config.scene.swept_index, by_paths.wavenumber)
     scenes = other_scenes(config, foci, threads, points)
     require_fringe("estimators", scenes[0].intensity, band.wavenumber, band.n_neuron * diameter)
     model = model_of_sweep(config, foci, threads, points)
@@ -140,7 +140,7 @@ def _true_slopes(
 ) -> dict[str, Any]:
     """Return the slopes of the light's own phase, and of its mean path."""
     places = zip(diameter.tolist(), foci.tolist(), strict=True)
-    lights = list(each(lambda place: instrument.light(*place), places, threads))
+    lights = list(each(lambda place: instrument.rays(*place), places, threads))
     phase, mean = path_slopes(lights, diameter, middle(instrument.wavenumber))
     return {"path_phase_slope": ("diameter", phase), "mean_path_slope": ("diameter", mean)}
 

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from octsim.config.derive import changed
+from octsim.config.derive import changed, nested
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.config.units import format_length
@@ -42,11 +42,11 @@ def other_scenes(
 ) -> list[OtherScene]:
     """Return the spectra of a sweep (foci (D,) in µm) of the model's own scene and of others."""
     scene = config.scene
-    gap, index = scene.gap + GAP, scene.refractive_index.neuron + INDEX
+    gap, index = scene.swept_gap + GAP, scene.swept_index + INDEX
     changes: Mapping[str, tuple[Mapping[str, Any], float]] = {
         "own": ({}, 0.0),
-        f"gap {1000 * GAP:+g} nm": ({"scene": {"gap": format_length(gap)}}, 0.0),
-        f"index {INDEX:+g}": ({"scene": {"refractive_index": {"neuron": index}}}, 0.0),
+        f"gap {1000 * GAP:+g} nm": (nested(scene.swept_gap_key, format_length(gap)), 0.0),
+        f"index {INDEX:+g}": ({"scene": {"refractive_index": {scene.swept_medium: index}}}, 0.0),
         f"focus {1000 * FOCUS:+g} nm": ({}, FOCUS),
     }
     diameters = config.sweep.diameters.values()

@@ -74,10 +74,10 @@ class Inputs:
 
 def inputs_of(config: Config, diameter: float, focus: float, x: float, y: float) -> Inputs:
     """Return the doubles of a config, of a point and of a ray's position as exact numbers."""
-    index, objective = config.scene.refractive_index, config.objective
+    scene, objective = config.scene, config.objective
     given = (
-        index.glass, index.water, index.neuron, config.scene.gap, diameter, focus,
-        objective.focus_distance, objective.numerical_aperture, objective.magnification,
+        scene.objective_index, scene.host_index, scene.swept_index, scene.swept_gap, diameter,
+        focus, objective.focus_distance, objective.numerical_aperture, objective.magnification,
         config.detector.core_diameter, x, y,
     )  # fmt: skip
     return Inputs(*map(numbers.mpf, given))

@@ -1,0 +1,120 @@
+"""The config's sections on the light: the objective with its pupil, and the polarisation."""
+
+from collections.abc import Mapping
+from math import pi
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Discriminator, PlainSerializer, Tag, WithJsonSchema
+
+from octsim.config.fields import PositiveLength, PositiveNumber, Section
+from octsim.config.fields import key as _key
+from octsim.config.units import ANGLE, format_angle, parse_angle, schema_of
+
+
+def _absent(value: object) -> object:
+    return None if value == "none" else value
+
+
+class GaussianFill(Section):
+    """A pupil that a Gaussian beam fills."""
+
+    gaussian: PositiveNumber
+    """Fill: 1/e² radius of intensity over the pupil's radius."""
+
+
+class FibreMode(Section):
+    """A pupil that the mode of a fibre fills."""
+
+    fibre: PositiveLength
+    """Mode-field diameter, seen at the magnification, µm."""
+
+
+def _pupil(value: object) -> object:
+    if isinstance(value, Mapping) and {"gaussian", "fibre"} <= value.keys():
+        raise ValueError("it should be one of the two")
+    return _absent(value)
+
+
+def _pupil_kind(value: object) -> str:
+    if isinstance(value, GaussianFill) or (isinstance(value, Mapping) and "fibre" not in value):
+        return "gaussian"
+    return "fibre" if isinstance(value, FibreMode | Mapping) else "name"
+
+
+Pupil = Annotated[
+    Annotated[Literal["uniform"] | None, Tag("name")]
+    | Annotated[GaussianFill, Tag("gaussian")]
+    | Annotated[FibreMode, Tag("fibre")],
+    Discriminator(_pupil_kind),
+    BeforeValidator(_pupil),
+]
+
+
+class Objective(Section):
+    """The objective lens, an ideal thin one."""
+
+    numerical_aperture: PositiveNumber = _key(1.2, "below the index of glass")
+    focus_distance: PositiveLength = _key(
+        "300 um", "from the objective plane to the focus; beyond every focus"
+    )
+    magnification: PositiveNumber = _key(20.0, "object to fibre")
+    pupil: Pupil = _key(
+        None,
+        "how light fills it: uniform, {gaussian: 1.0} (1/e² radius of intensity over the pupil's) "
+        "or {fibre: 5 um} (mode-field diameter); null is the scheme's own",
+    )
+    apodisation: Annotated[Literal["aplanatic"] | None, BeforeValidator(_absent)] = _key(
+        None, "aplanatic: √cos θ in, 1/√cos θ out; null or none is the scheme's own"
+    )
+
+
+_TURN = 2 * pi
+_STATES = ("unpolarised", "left", "right")
+
+
+def _state(value: object) -> object:
+    if value in _STATES:
+        return value
+    try:
+        return _direction(value)
+    except ValueError as error:
+        raise ValueError(f"{error}; or unpolarised, left or right") from None
+
+
+def _direction(value: object) -> float | None:
+    if _absent(value) is None:
+        return None
+    angle = parse_angle(value)
+    if abs(angle) > _TURN:
+        raise ValueError("it should be within a turn, -360 deg to 360 deg")
+    return angle
+
+
+def _written(value: object) -> object:
+    return format_angle(value) if isinstance(value, float) else value
+
+
+_Written = PlainSerializer(_written, return_type=str | None)
+_ANGLE = schema_of(ANGLE)
+_NOTHING = {"type": "null"}
+
+
+class PolarisationConfig(Section):
+    """Polarisation of the light that goes in, and of what is detected."""
+
+    input: Annotated[
+        float | Literal["unpolarised", "left", "right"] | None,
+        BeforeValidator(_state),
+        _Written,
+        WithJsonSchema({"anyOf": [_ANGLE, {"enum": list(_STATES)}, _NOTHING]}),
+    ] = _key(
+        None,
+        "unpolarised, left, right, or an angle from x to y as 30 deg; null or none is the scheme's "
+        "own",
+    )
+    analyser: Annotated[
+        float | None,
+        BeforeValidator(_direction),
+        _Written,
+        WithJsonSchema({"anyOf": [_ANGLE, _NOTHING]}),
+    ] = _key(None, "angle of one for the returned light, as 30 deg; null or none is none")

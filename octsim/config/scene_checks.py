@@ -1,0 +1,189 @@
+"""What no single key of a scene can tell: media without an index, and bodies that don't fit."""
+
+import difflib
+import itertools
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from octsim.config.models import Config
+from octsim.config.scene import SWEPT, CylinderConfig, SceneConfig
+from octsim.config.units import format_length
+from octsim.schemes.table import SCHEMES, Ability
+
+_THESIS = ("glass", "water", "neuron")
+
+
+def impossible_scene(config: Config) -> Iterator[str]:
+    """Return what is impossible of a plain config's scene, a line each."""
+    scene = config.scene
+    if wrong := [*_media(scene), *_layers(scene)] or [*_swept(scene)]:
+        yield from wrong
+    else:
+        yield from _sizes(config)
+
+
+def _media(scene: SceneConfig) -> Iterator[str]:
+    known, used = scene.refractive_index.of, set(scene.media.values())
+    for key, medium in scene.media.items():
+        if medium not in known:
+            nearest = difflib.get_close_matches(medium, known, n=1, cutoff=0)[0]
+            yield (
+                f"{key}: {medium} given, which has no refractive index; give "
+                f"scene.refractive_index.{medium}, or one that is known: the nearest is {nearest}"
+            )
+    for medium, index in known.items():
+        if medium not in used and medium not in _THESIS:
+            nearest = difflib.get_close_matches(medium, sorted(used), n=1, cutoff=0)[0]
+            yield (
+                f"scene.refractive_index.{medium}: {index} given, but nothing in the scene is of "
+                f"{medium}; name it in scene.layers or scene.cylinders, or leave it out; the "
+                f"nearest name in use is {nearest}"
+            )
+    for medium in scene.attenuation.of:
+        if medium not in used:
+            yield (
+                f"scene.attenuation.{medium}: given, but nothing in the scene is of {medium}; "
+                f"leave it out, or name one of {', '.join(sorted(used))}"
+            )
+
+
+def _layers(scene: SceneConfig) -> Iterator[str]:
+    last = len(scene.layers) - 1
+    for place, layer in enumerate(scene.layers):
+        outer, key = place in (0, last), f"scene.layers.{place}"
+        if outer and layer.thickness is not None:
+            where = "lowest" if place == 0 else "highest"
+            yield f"{key}.thickness: given, but the {where} layer has no end; leave it out"
+        if not outer and layer.thickness is None:
+            yield (
+                f"{key}: {layer.medium} given, between two other layers; give its thickness, as "
+                f"{{medium: {layer.medium}, thickness: 2 um}}"
+            )
+        if layer.thickness == SWEPT and scene.cylinders:
+            yield (
+                f"{key}.thickness: swept given beside cylinders; give it a length, or cylinders: []"
+            )
+
+
+def _swept(scene: SceneConfig) -> Iterator[str]:
+    swept = scene.swept
+    if len(swept) == 1:
+        return
+    what = ", ".join(swept) or "nothing"
+    yield (
+        f"scene: {what} to be swept; just one thing has no size of its own: a cylinder without "
+        "diameter, or with cylinders: [] a layer with thickness: swept"
+    )
+
+
+class _Body(NamedTuple):
+    """A cylinder at some diameter; all in µm."""
+
+    key: str
+    at: tuple[float, float, float]
+    along: tuple[float, float, float]
+    radius: float
+
+
+def diameters_of(config: Config) -> dict[str, float]:
+    """Return the diameters between which a run's are, µm, by the keys that ask for them."""
+    sweep, law = config.sweep.diameters, config.focus_law.diameters
+    return {
+        "sweep.diameters.start": sweep.start, "sweep.diameters.stop": sweep.stop,
+        "focus_law.diameters.start": law.start, "focus_law.diameters.stop": law.stop,
+        "focus_scan.diameter": config.focus_scan.diameter,
+    }  # fmt: skip
+
+
+def _sizes(config: Config) -> Iterator[str]:
+    scene, diameters = config.scene, diameters_of(config)
+    smallest = min(diameters.items(), key=lambda item: item[1])
+    # cylinders on one plane that do not overlap at the largest do not at a smaller one
+    largest = max(diameters.items(), key=lambda item: item[1])
+    for place, cylinder in enumerate(scene.cylinders):
+        key = f"scene.cylinders.{place}"
+        own = (f"{key}.diameter", cylinder.diameter) if cylinder.diameter else None
+        name, diameter = own or smallest
+        thick = math.fsum(shell.thickness for shell in cylinder.shells)
+        if thick >= diameter / 2:
+            yield (
+                f"{key}.shells: {format_length(thick)} thick together, but the radius by {name} is "
+                f"{format_length(diameter / 2)}; give thinner shells or a larger diameter"
+            )
+        layer = scene.layers[scene.host]
+        name, diameter = own or largest
+        top = scene.gap_of(cylinder) + diameter
+        if isinstance(layer.thickness, float) and not cylinder.elevation and top > layer.thickness:
+            yield (
+                f"{key}: reaches {format_length(top)} above the lower plane of its layer (its gap "
+                f"and {name}), through the upper one at {format_length(layer.thickness)}; give "
+                f"scene.layers.{scene.host}.thickness more, or a smaller diameter"
+            )
+    bodies = [_body(scene, place, largest[1]) for place in range(len(scene.cylinders))]
+    for one, other in itertools.combinations(bodies, 2):
+        apart, needed = _distance(one, other), one.radius + other.radius
+        if apart < needed:
+            yield (
+                f"{other.key}: overlaps {one.key}: their axes are {apart:.6g} um apart and their "
+                f"radii together {needed:.6g} um (at {largest[0]}); give another x, gap or azimuth"
+            )
+
+
+def _body(scene: SceneConfig, place: int, swept: float) -> _Body:
+    cylinder = scene.cylinders[place]
+    radius = (cylinder.diameter or swept) / 2
+    a, e = cylinder.azimuth, cylinder.elevation
+    return _Body(
+        f"scene.cylinders.{place}",
+        (cylinder.x, 0.0, scene.floor + scene.gap_of(cylinder) + radius),
+        (-math.sin(a) * math.cos(e), math.cos(a) * math.cos(e), math.sin(e)),
+        radius,
+    )
+
+
+def _distance(one: _Body, other: _Body) -> float:
+    """Return how far two axes, without an end, are from each other."""
+    between = [b - a for a, b in zip(one.at, other.at, strict=True)]
+    normal = _cross(one.along, other.along)
+    length = math.hypot(*normal)
+    if length < 1e-9:
+        return math.hypot(*_cross(between, one.along))
+    return abs(sum(a * b for a, b in zip(between, normal, strict=True))) / length
+
+
+def _cross(a: list[float] | tuple[float, ...], b: tuple[float, ...]) -> tuple[float, ...]:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def scene_remarks(config: Config) -> Iterator[str]:
+    """Say, a line each, what of a possible scene is likely not meant."""
+    scene = config.scene
+    for place, cylinder in enumerate(scene.cylinders):
+        key = f"scene.cylinders.{place}"
+        shells = len(cylinder.shells)
+        if shells and 4 * shells + 5 > config.tracing.max_intersections:
+            yield (
+                f"tracing.max_intersections: {config.tracing.max_intersections}, but light that "
+                f"returns from the far side of {key} meets {4 * shells + 5} surfaces; raise it"
+            )
+        if cylinder.elevation:
+            yield _met(config, key, cylinder)
+    aperture, index = config.objective.numerical_aperture, scene.host_index
+    split = Ability.POLARISATION not in SCHEMES[config.tracing.scheme].honours
+    if index < aperture and split:
+        yield (
+            f"objective.numerical_aperture: {aperture} is above the index of {scene.host_medium}, "
+            f"{index}, with polarisation.input: none: the thesis's split makes light off the plane "
+            "too bright where the focus is off the law; compare with tracing.scheme: fullwave"
+        )
+
+
+def _met(config: Config, key: str, cylinder: CylinderConfig) -> str:
+    radius = (cylinder.diameter or config.focus_scan.diameter) / 2
+    lift = abs(math.tan(cylinder.elevation))
+    below = config.scene.gap_of(cylinder) + radius - radius / math.cos(cylinder.elevation)
+    return (
+        f"{key}.elevation: {math.degrees(cylinder.elevation):.6g} deg, so the cylinder meets the "
+        f"plane below it {max(0.0, below) / lift:.2g} um from the optical axis, and ends there"
+    )

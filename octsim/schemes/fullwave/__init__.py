@@ -1,0 +1,1 @@
+"""Maxwell's equations for a cylinder over a plane, in partial waves."""

@@ -1,0 +1,64 @@
+"""The scene of the scheme fullwave: one cylinder over one plane, in numbers."""
+
+import math
+from typing import NamedTuple
+
+from octsim.base.errors import OctsimError
+from octsim.optics.scene import Cylinder, Plane, Scene
+
+
+class CylinderOnPlane(NamedTuple):
+    """A cylinder of diameter d over the plane z = 0, its axis at x = offset; lengths in µm."""
+
+    n_glass: float
+    """Below the plane."""
+    n_water: float
+    """Around the cylinder."""
+    n_neuron: float
+    """Of the cylinder."""
+    gap: float
+    """Between plane and cylinder."""
+    diameter: float
+    offset: float = 0.0
+    """Of the axis, across it, from the optical axis."""
+
+    @property
+    def radius(self) -> float:
+        """Half the diameter, µm."""
+        return self.diameter / 2
+
+    @property
+    def height(self) -> float:
+        """Height of the axis over the plane, µm."""
+        return self.gap + self.radius
+
+
+def azimuth_of(scene: Scene) -> float:
+    """Return the angle from the y axis to that of the scene's cylinder, rad."""
+    return next(one.azimuth for one in scene.surfaces if isinstance(one, Cylinder))
+
+
+def cylinder_on_plane(scene: Scene) -> CylinderOnPlane:
+    """Return a scene in numbers.
+
+    Raises
+    ------
+    OctsimError
+        If it is another scene than one cylinder over one plane.
+    """
+    match scene.surfaces:
+        case (Plane() as plane, Cylinder() as cylinder):
+            pass
+        case _:
+            raise OctsimError(
+                f"scene: {len(scene.surfaces)} surfaces given, but scheme fullwave solves for one "
+                "cylinder over one plane; give tracing.scheme: paths"
+            )
+    glass, water, neuron = (
+        region.material.index(1.0).real for region in (plane.below, plane.above, cylinder.inside)
+    )
+    return CylinderOnPlane(
+        glass, water, neuron, cylinder.z - cylinder.radius - plane.height, 2 * cylinder.radius,
+        # an axis turned about the vertical one through (x, 0) is closer
+        cylinder.x * math.cos(cylinder.azimuth),
+    )  # fmt: skip

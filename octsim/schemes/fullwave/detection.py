@@ -1,0 +1,79 @@
+r"""What the detector collects: the overlap of returned light with the pupil's own mode."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from octsim.optics.pupil import Pupil
+from octsim.schemes.fullwave.coupling import both_signs
+from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
+from octsim.schemes.fullwave.illumination import Lit
+from octsim.schemes.fullwave.plane import fresnel, normal
+
+Array = NDArray[Any]
+
+
+def collected(lit: Lit, e: Array, h: Array, n_water: float, along: NDArray[np.float64]) -> Array:
+    r"""Return the overlap density of outgoing waves over k_y, (K, Y), by reciprocity.
+
+    .. math:: \frac{2}{\pi (\varepsilon_2 - s_y^2)} \sum_m (-1)^m
+        \left[ \varepsilon_2 \tilde a^E_{-m}(-s_y)\, b^E_m - \tilde a^H_{-m}(-s_y)\, b^H_m \right]
+
+    The detected mode's waves ã are those of the illumination: at −m and −s_y the same but for the
+    sign of the mirror class that the polarisation does not have of itself.
+
+    Parameters
+    ----------
+    lit : Lit
+        The illumination by the detected mode.
+    e, h : ndarray, shape (K, Y, M + 1)
+        Outgoing waves of the same mirror class.
+    n_water : float
+    along : ndarray, shape (Y,)
+        s_y.
+    """
+    own = 1 if lit.polarisation == lit.mirror else -1
+    sum_over_m = ((n_water**2 * lit.e * e - lit.h * h) * both_signs(e.shape[-1])).sum(axis=-1)
+    return own * 2 / (np.pi * (n_water**2 - along**2)) * sum_over_m
+
+
+def norm(pupil: Pupil, aperture: float, k: NDArray[np.float64], nodes: int) -> NDArray[np.float64]:
+    """Return ∫ w² ρ dρ over the pupil at each wavenumber, (K,): a perfect mirror's, once."""
+    sine, measure = _radial(aperture, nodes)
+    return np.array([(_squared(pupil, sine, aperture, one) * measure).sum() for one in k.tolist()])
+
+
+def plane_return(
+    scene: CylinderOnPlane,
+    pupil: Pupil,
+    aperture: float,
+    focus: float,
+    k: NDArray[np.float64],
+    nodes: int,
+) -> Array:
+    r"""Return what the detector collects of the plane's own reflection, (K,).
+
+    .. math:: \frac{\int w^2 \frac{r_s - r_p}{2} e^{-2 i k z_f \sqrt{n_1^2 - \rho^2}} \rho d\rho}
+        {\int w^2 \rho d\rho}
+    """
+    sine, measure = _radial(aperture, nodes)
+    below, above = normal(scene.n_glass, sine), normal(scene.n_water, sine)
+    r_s, r_p = fresnel(below, above, scene.n_glass, scene.n_water)
+    turned = np.exp(-2j * focus * k[:, np.newaxis] * below) * ((r_s - r_p) / 2 * measure)
+    weight = np.stack([_squared(pupil, sine, aperture, one) for one in k.tolist()])
+    whole: Array = (weight * turned).sum(axis=1) / (weight * measure).sum(axis=1)
+    return whole
+
+
+def _radial(aperture: float, nodes: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return ρ and ρ dρ, Gauss–Legendre in ρ²."""
+    x, w = np.polynomial.legendre.leggauss(nodes)
+    return aperture * np.sqrt((x + 1) / 2), w * aperture**2 / 4
+
+
+def _squared(
+    pupil: Pupil, sine: NDArray[np.float64], aperture: float, wavenumber: float
+) -> NDArray[np.float64]:
+    squared: NDArray[np.float64] = pupil.amplitude(sine, aperture, wavenumber) ** 2
+    return squared

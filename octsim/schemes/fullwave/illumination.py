@@ -1,0 +1,130 @@
+r"""The light that the pupil sends to the cylinder, in regular partial waves about its axis.
+
+.. math::
+
+    a_m = \int w(\rho) \cos^{-1/2}\theta\, e^{-i k_{z1} z_f + i k_{z2} h + i k_x x_0}\,
+    (t F)\, e^{i m \beta}\, ds_x, \quad \sin\beta = k_x / \kappa_2
+
+with F = :math:`(E_y, Z_0 H_y)` of an aplanatic objective (Richards & Wolf, Proc. R. Soc. A 253, 358
+(1959)).
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from octsim.optics.pupil import Pupil
+from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
+from octsim.schemes.fullwave.plane import normal, reflection
+
+Array = NDArray[Any]
+
+
+class Lit(NamedTuple):
+    """Regular waves of one polarisation and one mirror class, (K, Y, M + 1) each."""
+
+    polarisation: int
+    """0 across the cylinder, 1 along it."""
+    mirror: int
+    """The class: 0 if E_y is odd in m and H_y even, 1 if the reverse."""
+    e: Array
+    h: Array
+
+
+def mirror_waves(mirror: int, angle: Array, waves: int) -> tuple[Array, Array]:
+    """Return the parts of e^{imβ}, m = 0 … M, that E_y and H_y of a mirror class have.
+
+    Parameters
+    ----------
+    mirror : int
+        The class.
+    angle : ndarray, shape (..., B)
+        β.
+    waves : int
+        M.
+
+    Returns
+    -------
+    e, h : ndarray, shape (..., M + 1, B)
+    """
+    turn = np.arange(waves + 1)[:, np.newaxis] * angle[..., np.newaxis, :]
+    odd, even = 1j * np.sin(turn), np.cos(turn) + 0j
+    return (odd, even) if mirror == 0 else (even, odd)
+
+
+def illumination(
+    scene: CylinderOnPlane,
+    pupil: Pupil,
+    aperture: float,
+    focus: float,
+    along: NDArray[np.float64],
+    k: NDArray[np.float64],
+    waves: int,
+    nodes: int,
+) -> list[Lit]:
+    """Return the waves of both polarisations, those of mirror classes that are not 0.
+
+    Parameters
+    ----------
+    scene : CylinderOnPlane
+    pupil, aperture, focus
+        What weighs the light over the pupil, numerical aperture, height of the focus (µm).
+    along : ndarray, shape (Y,)
+        Components k_y / k.
+    k : ndarray, shape (K,)
+        Wavenumbers, 1/µm.
+    waves, nodes : int
+        Largest order M, and Gauss–Legendre nodes over k_x / k > 0.
+    """
+    x, w = np.polynomial.legendre.leggauss(nodes)
+    reach = np.sqrt(aperture**2 - along**2)[:, np.newaxis]
+    across = reach * (x + 1) / 2
+    sideways = np.broadcast_to(along[:, np.newaxis], across.shape)
+    sine = np.hypot(across, sideways)
+    below, above = normal(scene.n_glass, sine), normal(scene.n_water, sine)
+    r = reflection(
+        sideways + 0j, across + 0j, below, above, scene.n_glass, scene.n_water, upwards=True
+    )
+    angle = np.arctan2(across, above.real) + 0j
+    wavenumber = k[:, np.newaxis, np.newaxis]
+    weight = np.stack([pupil.amplitude(sine, aperture, one) for one in k.tolist()])
+    # both halves of the integral over k_x
+    measure = reach * w * np.sqrt(scene.n_glass / below)
+    travel = weight * measure * np.exp(1j * wavenumber * (above * scene.height - below * focus))
+    offset = wavenumber * across * scene.offset
+    of_class = (np.cos(offset) + 0j, 1j * np.sin(offset))
+    found = []
+    for polarisation in (0, 1):
+        e, h = _components(polarisation, sideways, across, sine, below, scene.n_glass)
+        through = e + r.ee * e + r.eh * h, h + r.he * e + r.hh * h
+        for turned in (0, 1) if scene.offset else (0,):
+            mirror = polarisation ^ turned
+            part = travel * of_class[turned]
+            # a matrix for each k_y, over all wavenumbers
+            sides = (
+                _over_across(part * field, waves_of)
+                for field, waves_of in zip(through, mirror_waves(mirror, angle, waves), strict=True)
+            )
+            found.append(Lit(polarisation, mirror, *sides))
+    return found
+
+
+def _over_across(field: Array, waves: Array) -> Array:
+    """Integrate (K, Y, X) over k_x with waves (Y, M + 1, X): (K, Y, M + 1)."""
+    return (field.swapaxes(0, 1) @ waves.swapaxes(1, 2)).swapaxes(0, 1)
+
+
+def _components(
+    polarisation: int,
+    along: NDArray[np.float64],
+    across: NDArray[np.float64],
+    sine: NDArray[np.float64],
+    below: Array,
+    n_glass: float,
+) -> tuple[Array, Array]:
+    """Return E_y and Z₀ H_y of the pupil's light in glass."""
+    c, s = across / sine, along / sine
+    radial, azimuthal = (c, -s) if polarisation == 0 else (s, c)
+    cosine = below / n_glass
+    return azimuthal * c + radial * cosine * s, n_glass * (radial * c - azimuthal * cosine * s)

@@ -1,0 +1,71 @@
+"""How many partial waves and nodes a point takes: where to begin, how to go on, where to stop."""
+
+import math
+from typing import NamedTuple
+
+from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
+
+MOST_WAVES = 400
+MOST_NODES = 400
+_TRIES = 8
+
+
+class Orders(NamedTuple):
+    """Of the sums and integrals of one solution."""
+
+    waves: int
+    """Largest order M of the partial waves."""
+    across: int
+    """Nodes over k_x > 0."""
+    contour: int
+    """Nodes on half the contour of the coupling to the plane."""
+    along: int
+    """Nodes over k_y > 0."""
+
+    def raised(self) -> "Orders":
+        """Return the next orders to try, or to compare with."""
+        return Orders(*(number + max(2, math.ceil(0.2 * number)) for number in self))
+
+    @property
+    def within_budget(self) -> bool:
+        """Whether a solution takes seconds and not minutes."""
+        return self.waves <= MOST_WAVES and max(self[1:]) <= MOST_NODES
+
+
+def first_orders(
+    scene: CylinderOnPlane, aperture: float, focus: float, largest_k: float, accuracy: float
+) -> Orders:
+    """Return orders that are usually enough."""
+    digits = -math.log10(accuracy)
+    size = largest_k * scene.radius * max(scene.n_neuron, scene.n_water)
+    spread = abs(_defocus(scene, aperture, focus)) * largest_k
+    waves = size + (1 + 0.35 * digits) * size ** (1 / 3) + 0.5
+    return Orders(
+        math.ceil(waves), math.ceil(3 + digits + 0.25 * (size + spread)), math.ceil(14 + size),
+        math.ceil(2 + 0.75 * digits + 0.85 * size + 0.5 * spread),
+    )  # fmt: skip
+
+
+def radial_nodes(point_aperture: float, n_glass: float, focus: float, largest_k: float) -> int:
+    """Return nodes over the pupil's radius that are always enough for the plane's own light."""
+    depth = n_glass - math.sqrt(n_glass**2 - point_aperture**2)
+    return math.ceil(30 + 1.2 * largest_k * abs(focus) * depth)
+
+
+def _defocus(scene: CylinderOnPlane, aperture: float, focus: float) -> float:
+    """Return by how much the optical path to the axis differs between the rim and the axis, µm."""
+    glass, water = scene.n_glass, scene.n_water
+    in_glass = glass - math.sqrt(glass**2 - aperture**2)
+    in_water = water - math.sqrt(max(water**2 - aperture**2, 0.0))
+    return scene.height * in_water - focus * in_glass
+
+
+def first_nodes(scene: CylinderOnPlane, band: tuple[float, float], accuracy: float) -> int:
+    """Return the wavenumbers in a band that are usually enough."""
+    reach = scene.n_neuron * scene.diameter + scene.n_water * scene.gap
+    return math.ceil(2.5 + 0.75 * (band[1] - band[0]) * reach - 1.35 * math.log10(accuracy))
+
+
+def most_nodes(scene: CylinderOnPlane, band: tuple[float, float], accuracy: float) -> int:
+    """Return the wavenumbers in a band that are not exceeded."""
+    return min(MOST_NODES, 2 * first_nodes(scene, band, accuracy) + 4)

@@ -1,0 +1,161 @@
+"""The field of one point to an accuracy: solved, compared with itself, and solved better."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from octsim.optics.pupil import Pupil
+from octsim.schemes.field_sum import relative_error
+from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
+from octsim.schemes.fullwave.detection import collected, norm, plane_return
+from octsim.schemes.fullwave.illumination import illumination
+from octsim.schemes.fullwave.operators import Operators
+from octsim.schemes.fullwave.orders import (
+    Orders,
+    first_nodes,
+    first_orders,
+    most_nodes,
+    radial_nodes,
+)
+from octsim.schemes.fullwave.scatter import incoming, scattered
+from octsim.schemes.fullwave.series import coefficients, nodes
+from octsim.schemes.light import TERMS, AccuracyStatus, Waves
+
+Array = NDArray[Any]
+_CHECKED = 3
+"""Wavenumbers at which a solution is compared with one of raised orders."""
+_TAIL = 3
+"""Chebyshev coefficients, the last, that tell of those left out."""
+
+
+class Point(NamedTuple):
+    """What a field is asked for."""
+
+    scene: CylinderOnPlane
+    pupil: Pupil
+    aperture: float
+    """Numerical aperture."""
+    focus: float
+    """Height of the focus, µm."""
+
+
+class Solved(NamedTuple):
+    """The field at K wavenumbers."""
+
+    values: Array
+    """(2, K)."""
+    terms: Array
+    """(3, 2, K)."""
+
+
+def field_at(
+    point: Point, k: NDArray[np.float64], orders: Orders, tolerance: float, operators: Operators
+) -> Solved:
+    """Return the detected field at some wavenumbers, by sums of some orders.
+
+    Parameters
+    ----------
+    point : Point
+    k : ndarray, shape (K,)
+        Wavenumbers, 1/µm.
+    orders : Orders
+    tolerance : float
+        Of the multiple scattering between cylinder and plane.
+    operators : Operators
+        Those kept.
+    """
+    scene, pupil, aperture, focus = point
+    operator = operators.of(scene, aperture, k, orders)
+    lights = illumination(
+        scene, pupil, aperture, focus, operator.along, k, orders.waves, orders.across
+    )
+    radial = radial_nodes(aperture, scene.n_glass, focus, float(k.max()))
+    whole = norm(pupil, aperture, k, radial) * 4 * np.pi * scene.n_glass
+    cylinder = np.zeros((TERMS_OF_CYLINDER, 2, k.size), np.complex128)
+    for lit in lights:
+        e, h = incoming(operator, lit, tolerance)
+        for term, matrix in enumerate(operator.cylinder):
+            density = collected(lit, *scattered(matrix, e, h), scene.n_water, operator.along)
+            cylinder[term, lit.polarisation] += (density * operator.along_weight).sum(axis=1)
+    cylinder /= whole
+    plane = plane_return(scene, pupil, aperture, focus, k, radial)
+    both = np.broadcast_to(plane, (2, k.size))
+    return Solved(plane + cylinder[0], np.stack((both, cylinder[1], cylinder[2])))
+
+
+TERMS_OF_CYLINDER = len(TERMS)
+"""All of the cylinder's light, that of its near side and that of its far side."""
+
+
+def solve(
+    scene: CylinderOnPlane,
+    pupil: Pupil,
+    aperture: float,
+    focus: float,
+    band: tuple[float, float],
+    accuracy: float,
+    operators: Operators,
+) -> Waves:
+    """Return the detected field of a point over a band, to an accuracy.
+
+    The error is estimated from a solution of raised orders at three wavenumbers, and from the last
+    Chebyshev coefficients over the wavenumber. Orders and wavenumbers are raised until it is within
+    the accuracy, or beyond what a point may take.
+
+    Parameters
+    ----------
+    scene : CylinderOnPlane
+    pupil, aperture, focus
+        What weighs the light over the pupil, numerical aperture, height of the focus (µm).
+    band : (float, float)
+        Smallest and largest wavenumber, 1/µm.
+    accuracy : float
+        Largest error of the intensity over the largest intensity.
+    operators : Operators
+        Where those are kept that several points share.
+    """
+    point = Point(scene, pupil, aperture, focus)
+    orders = first_orders(scene, aperture, focus, band[1], accuracy)
+    number, most = first_nodes(scene, band, accuracy), most_nodes(scene, band, accuracy)
+    removed = removed_path(scene, focus)
+    best = None
+    while orders.within_budget and number <= most:
+        k = nodes(band, number)
+        found = field_at(point, k, orders, 1e-2 * accuracy, operators)
+        check = np.unique(np.linspace(0, number - 1, _CHECKED).round().astype(int))
+        finer = field_at(point, k[check], orders.raised(), 1e-3 * accuracy, operators)
+        by_orders = 2 * float(np.abs(finer.values - found.values[:, check]).max())
+        slow = np.exp(-1j * k * removed)
+        series = np.abs(coefficients(found.values * slow))
+        by_nodes = float(series[-_TAIL:].sum(axis=0).max())
+        error = by_orders + by_nodes
+        largest = float(np.sqrt((np.abs(found.values) ** 2).mean(axis=0).max()))
+        reached = relative_error(largest, error) <= accuracy
+        status = AccuracyStatus.REACHED if reached else AccuracyStatus.BUDGET_SPENT
+        best = Waves(
+            k, found.values * slow, found.terms * slow, removed, 0.0, error, orders.waves, status
+        )
+        if reached:
+            return best
+        if by_orders > by_nodes / 2:
+            orders = orders.raised()
+        if by_nodes > by_orders / 2:
+            number += 3
+    if best is not None:
+        return best
+    k = nodes(band, 1)
+    nothing = np.full((2, 1), np.nan + 0j)
+    return Waves(
+        k, nothing, np.stack([nothing] * len(TERMS)), removed, 0.0, np.inf, orders.waves,
+        AccuracyStatus.BUDGET_SPENT,
+    )  # fmt: skip
+
+
+def removed_path(scene: CylinderOnPlane, focus: float) -> float:
+    """Return the optical path whose phase is taken out of the field, µm.
+
+    It is midway between the plane's and the far side's, so that the rest is as smooth as can be.
+    """
+    across = scene.n_water * scene.gap + scene.n_neuron * scene.diameter
+    return -2 * scene.n_glass * focus + across
