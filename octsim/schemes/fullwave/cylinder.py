@@ -86,9 +86,9 @@ def _tangential(one: Cylindrical, side: _Side) -> Array:
 
 def _boundary(outer: Cylindrical, outside: _Side, core: Cylindrical, inside: _Side) -> Array:
     """Return N."""
-    return core.value[..., np.newaxis, np.newaxis] * _tangential(outer, outside) - outer.value[
-        ..., np.newaxis, np.newaxis
-    ] * _tangential(core, inside)
+    j3, z = (one.value[..., np.newaxis, np.newaxis] for one in (core, outer))
+    found: Array = j3 * _tangential(outer, outside) - z * _tangential(core, inside)
+    return found
 
 
 def _debye(outside: _Side, inside: _Side, h2: Cylindrical, h3: Cylindrical) -> tuple[Array, Array]:
@@ -125,4 +125,5 @@ def _solved(matrix: Array, right: Array) -> Array:
     """Return matrix⁻¹ right, of 2 × 2 matrices."""
     a, b, c, d = (matrix[..., i, j] for i in (0, 1) for j in (0, 1))
     determinant = (a * d - b * c)[..., np.newaxis, np.newaxis]
-    return _matrix(d, -b, -c, a) @ right / determinant
+    found: Array = _matrix(d, -b, -c, a) @ right / determinant
+    return found

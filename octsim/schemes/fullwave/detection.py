@@ -35,7 +35,8 @@ def collected(lit: Lit, e: Array, h: Array, n_water: float, along: NDArray[np.fl
     """
     own = 1 if lit.polarisation == lit.mirror else -1
     sum_over_m = ((n_water**2 * lit.e * e - lit.h * h) * both_signs(e.shape[-1])).sum(axis=-1)
-    return own * 2 / (np.pi * (n_water**2 - along**2)) * sum_over_m
+    density: Array = own * 2 / (np.pi * (n_water**2 - along**2)) * sum_over_m
+    return density
 
 
 def norm(pupil: Pupil, aperture: float, k: NDArray[np.float64], nodes: int) -> NDArray[np.float64]:

@@ -65,4 +65,5 @@ def reflection(
 
 def normal(index: float, sine: NDArray[np.float64]) -> Array:
     """Return k_z over k in a medium, for the tangential component ρ over k."""
-    return np.sqrt(index**2 - np.square(sine) + 0j)
+    found: Array = np.sqrt(index**2 - np.square(sine) + 0j)
+    return found
