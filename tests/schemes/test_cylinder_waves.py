@@ -8,6 +8,9 @@ from line_beam import Polarisation, Slide, cylinder
 from oblique_cylinder import wait
 from peers.partial_waves_run import by_treams
 
+from octsim.schemes.fullwave.cylinder import scattering
+from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
+
 OUTSIDE = 1.33
 
 
@@ -67,6 +70,18 @@ def test_a_cylinder_is_as_treams_has_it_with_the_signs_of_its_cross_terms(
 ) -> None:
     found = wait(**case._asdict(), outside=OUTSIDE)
     np.testing.assert_allclose(found, matrix, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("case", "matrix"), [(case, matrix) for case, matrix in BY_TREAMS if case.order >= 0]
+)
+def test_scheme_fullwave_scatters_as_treams_does_with_the_signs_of_its_cross_terms(
+    case: Case, matrix: list[list[complex]]
+) -> None:
+    scene = CylinderOnPlane(1.52, OUTSIDE, case.inside, 0.005, 2 * case.radius)
+    along, k = np.array([case.ky / case.k]), np.array([case.k])
+    whole = scattering(scene, along, k, case.order + 20).whole[0, 0, case.order]
+    np.testing.assert_allclose(whole, matrix, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("case", [case for case, _ in BY_TREAMS])

@@ -14,6 +14,15 @@ from line_beam import (
     returned,
 )
 
+from octsim.optics.pupil import GaussianPupil
+from octsim.schemes.fullwave.coupling import contour, coupling
+from octsim.schemes.fullwave.cylinder import scattering
+from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
+from octsim.schemes.fullwave.detection import collected
+from octsim.schemes.fullwave.illumination import illumination, mirror_waves
+from octsim.schemes.fullwave.operators import Operator
+from octsim.schemes.fullwave.scatter import incoming, scattered
+
 K = 8.0
 FOCUS = 0.75
 LIGHTS: tuple[Polarisation, ...] = ("along", "across")
@@ -113,3 +122,49 @@ def test_finite_differences_in_time_come_to_the_same_with_the_pixel_squared(
     )
     without_pixels = (160**2 * fine - 120**2 * coarse) / (160**2 - 120**2)
     assert abs(without_pixels / exact - 1) < 3e-4
+
+
+def slice_of_fullwave(slide: Slide, fill: float, aperture: float, offset: float) -> list[complex]:
+    """Return what scheme fullwave collects of the cylinder's light at k_y = 0: across, along."""
+    scene = CylinderOnPlane(*slide, offset=offset)
+    k, along, waves = np.array([K]), np.zeros(1), int(K * slide.neuron * scene.radius) + 22
+    path = contour(80, waves, slide.water * K * scene.height)
+    mirrors = tuple(mirror_waves(mirror, path.angle, waves) for mirror in (0, 1))
+    operator = Operator(
+        k, along, np.ones(1), scattering(scene, along, k, waves), coupling(scene, path, along, k),
+        mirrors,
+    )  # fmt: skip
+    pupil = GaussianPupil(fill)
+    sine, weight = np.polynomial.legendre.leggauss(80)
+    squared = pupil.amplitude(aperture * sine, aperture, K) ** 2
+    whole = 2 * slide.glass * aperture * (squared * weight).sum()
+    found = [0j, 0j]
+    for lit in illumination(scene, pupil, aperture, FOCUS, along, k, waves, 60):
+        b = scattered(operator.cylinder.whole, *incoming(operator, lit, 1e-14))
+        density = collected(lit, *b, scene.n_water, along)
+        found[lit.polarisation] += complex(density[0, 0]) / whole
+    return found
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.25])
+@pytest.mark.parametrize(
+    "slide",
+    [
+        Slide(),
+        Slide(gap=0, diameter=0.7),
+        Slide(gap=0.3, diameter=2.4, neuron=1.45),
+        Slide(glass=1.45, water=1.36, neuron=1.34, diameter=1.8),
+        Slide(neuron=2.0),
+    ],
+)
+def test_scheme_fullwave_is_the_same_at_right_angles_to_the_cylinder(
+    slide: Slide, offset: float
+) -> None:
+    beam = gaussian_beam(slide, K, FOCUS, 1)
+    beam = beam._replace(amplitude=beam.amplitude * np.exp(1j * beam.kx * offset))
+    found = slice_of_fullwave(slide, 1, 1.2, offset)
+    for light, value in zip(("across", "along"), found, strict=True):
+        assert light in LIGHTS
+        plane = detected(slide._replace(neuron=slide.water), K, beam, light)
+        cylinder_alone = detected(slide, K, beam, light) - plane
+        assert value == pytest.approx(cylinder_alone, rel=0, abs=1e-10)
