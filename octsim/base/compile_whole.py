@@ -17,17 +17,26 @@ from typing import Any
 
 import llvmlite.binding
 from numba.core import codegen
+from numba.core.compiler import Flags
 from numba.core.cpu import CPUContext
 from numba.core.event import Listener, register
+from numba.core.targetconfig import ConfigStack
+from numba.core.typing import templates
 
 _library: Any = codegen.CPUCodeLibrary
 _OPTIMISE, _MAKE_CODE, _TO_LINK = (
     "_optimize_final_module", "_finalize_final_module", "_get_module_for_linking"
 )  # fmt: skip
 _WRAP = "create_cfunc_wrapper"
-FITS = hasattr(CPUContext, _WRAP) and all(
-    hasattr(_library, name) for name in (_OPTIMISE, _MAKE_CODE, _TO_LINK)
+_part: Any = getattr(templates, "_OverloadFunctionTemplate", None)
+_TYPE = "generic"
+FITS = (
+    hasattr(CPUContext, _WRAP)
+    and hasattr(_part, _TYPE)
+    and all(hasattr(_library, name) for name in (_OPTIMISE, _MAKE_CODE, _TO_LINK))
 )
+_OF_ALL = "nrt", "error_model", "fastmath", "boundscheck", "debuginfo"
+"""Options of the whole that its parts are compiled with."""
 _ENVIRONMENT = "NumbaEnv"  # of global variables that numba looks up in each function's code
 _PARTS_BETWEEN = 100
 """Functions between looks for garbage; Python's own looks take a seventh of all."""
@@ -42,6 +51,8 @@ class _Compiling(local):
     """Functions, each for the one before."""
     parts = 0
     """Functions that are done."""
+    options: "_Shared | None" = None
+    """Those of all parts."""
     apart: frozenset[str] = frozenset()
     """Names of functions that are optimised by themselves too."""
 
@@ -76,9 +87,47 @@ def _waits(name: str) -> bool:
     return _is_part() and name not in _compiling.apart
 
 
+class _Shared(Flags):  # type: ignore[misc]
+    """Options of a whole that its parts have in common.
+
+    There is one object of the same options, as numba compares them tens of thousands of times.
+    """
+
+    __slots__ = ()
+    __hash__ = object.__hash__
+
+    def __eq__(self, other: object) -> bool:
+        return self is other
+
+
+_made: list[_Shared] = []
+
+
+def _shared(whole: Flags) -> _Shared:
+    """Return the options that the parts of a whole have, from its own."""
+    flags = _Shared()  # type: ignore[no-untyped-call]
+    for name in _OF_ALL:
+        setattr(flags, name, getattr(whole, name))
+    same = (one for one in _made if one.values() == flags.values())
+    found = next(same, flags)
+    if found is flags:
+        _made.append(flags)
+    return found
+
+
 if FITS:
     _optimise, _make_code = getattr(_library, _OPTIMISE), getattr(_library, _MAKE_CODE)
     _wrap = getattr(CPUContext, _WRAP)
+    _type = getattr(_part, _TYPE)
+
+    def _type_for_all(self: Any, *arguments: Any) -> Any:
+        """Compile a part once for all that call it; numba does for each set of their options."""
+        if not _compiling.depth:
+            return _type(self, *arguments)
+        if _compiling.options is None:
+            _compiling.options = _shared(ConfigStack().top())  # type: ignore[no-untyped-call]
+        with ConfigStack().enter(_compiling.options):  # type: ignore[no-untyped-call]
+            return _type(self, *arguments)
 
     def _optimise_the_whole(self: Any) -> None:
         if not _waits(self.name):
@@ -97,6 +146,7 @@ if FITS:
             _wrap(self, *arguments, **named)
 
     setattr(CPUContext, _WRAP, _wrap_the_whole)
+    setattr(_part, _TYPE, _type_for_all)
     setattr(_library, _OPTIMISE, _optimise_the_whole)
     setattr(_library, _MAKE_CODE, _make_code_of_the_whole)
 
@@ -121,8 +171,8 @@ def as_a_whole(apart: frozenset[str]) -> Iterator[None]:
         computed in lanes only then.
     """
     here = _compiling
-    around = here.within, here.depth, here.apart
-    here.within, here.depth, here.apart = True, 0, apart
+    around = here.within, here.depth, here.apart, here.options
+    here.within, here.depth, here.apart, here.options = True, 0, apart, None
     collects = gc.isenabled()
     gc.disable()
     try:
@@ -130,4 +180,4 @@ def as_a_whole(apart: frozenset[str]) -> Iterator[None]:
     finally:
         if collects:
             gc.enable()
-        here.within, here.depth, here.apart = around
+        here.within, here.depth, here.apart, here.options = around
