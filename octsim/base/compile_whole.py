@@ -13,6 +13,7 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import local
+from types import FunctionType
 from typing import Any
 
 import llvmlite.binding
@@ -51,8 +52,8 @@ class _Compiling(local):
     """Functions, each for the one before."""
     parts = 0
     """Functions that are done."""
-    options: "_Shared | None" = None
-    """Those of all parts."""
+    options: "tuple[_Shared, ...]" = ()
+    """Those of its parts: of functions in Python, and of those that numba has ready."""
     apart: frozenset[str] = frozenset()
     """Names of functions that are optimised by themselves too."""
 
@@ -103,9 +104,10 @@ class _Shared(Flags):  # type: ignore[misc]
 _made: list[_Shared] = []
 
 
-def _shared(whole: Flags) -> _Shared:
-    """Return the options that the parts of a whole have, from its own."""
+def _shared(whole: Flags, inline: bool) -> _Shared:
+    """Return the options that the parts of a whole have, from its own; whether they are inlined."""
     flags = _Shared()  # type: ignore[no-untyped-call]
+    flags.forceinline = inline
     for name in _OF_ALL:
         setattr(flags, name, getattr(whole, name))
     same = (one for one in _made if one.values() == flags.values())
@@ -124,9 +126,12 @@ if FITS:
         """Compile a part once for all that call it; numba does for each set of their options."""
         if not _compiling.depth:
             return _type(self, *arguments)
-        if _compiling.options is None:
-            _compiling.options = _shared(ConfigStack().top())  # type: ignore[no-untyped-call]
-        with ConfigStack().enter(_compiling.options):  # type: ignore[no-untyped-call]
+        if not _compiling.options:
+            whole = ConfigStack().top()  # type: ignore[no-untyped-call]
+            _compiling.options = _shared(whole, False), _shared(whole, True)
+        # numba's own, such as max, are a few instructions; ours say for themselves
+        flags = _compiling.options[not isinstance(type(self).key, FunctionType)]
+        with ConfigStack().enter(flags):  # type: ignore[no-untyped-call]
             return _type(self, *arguments)
 
     def _optimise_the_whole(self: Any) -> None:
@@ -172,7 +177,7 @@ def as_a_whole(apart: frozenset[str]) -> Iterator[None]:
     """
     here = _compiling
     around = here.within, here.depth, here.apart, here.options
-    here.within, here.depth, here.apart, here.options = True, 0, apart, None
+    here.within, here.depth, here.apart, here.options = True, 0, apart, ()
     collects = gc.isenabled()
     gc.disable()
     try:
