@@ -3,7 +3,8 @@
 numba makes machine code of every function that another calls, and links what it had optimised into
 the caller, where it is optimised and made machine code of again, level by level. Of code that only
 others call, none of that is used. Within `as_a_whole` such parts are kept as they are, for linking,
-and the whole is optimised when all is together.
+and the whole is optimised when all is together. A part is compiled once for all that call it:
+numba compiles it anew for callers of other options, and has it inlined wherever its caller is.
 
 What is replaced for that are methods of numba that are not public. Where a numba has none of these
 names, `FITS` is false and all is compiled as numba does: to the same numbers, in twice the time.
@@ -31,16 +32,16 @@ _OPTIMISE, _MAKE_CODE, _TO_LINK = (
 _WRAP = "create_cfunc_wrapper"
 _part: Any = getattr(templates, "_OverloadFunctionTemplate", None)
 _TYPE = "generic"
+_INLINE = "forceinline"
+_OF_ALL = "nrt", "error_model", "fastmath", "boundscheck", "debuginfo"
+"""Options of the whole that its parts are compiled with."""
 FITS = (
     hasattr(CPUContext, _WRAP)
     and hasattr(_part, _TYPE)
     and all(hasattr(_library, name) for name in (_OPTIMISE, _MAKE_CODE, _TO_LINK))
+    and all(hasattr(Flags, name) for name in (*_OF_ALL, _INLINE))
 )
-_OF_ALL = "nrt", "error_model", "fastmath", "boundscheck", "debuginfo"
-"""Options of the whole that its parts are compiled with."""
 _ENVIRONMENT = "NumbaEnv"  # of global variables that numba looks up in each function's code
-_PARTS_BETWEEN = 100
-"""Functions between looks for garbage; Python's own looks take a seventh of all."""
 
 
 class _Compiling(local):
@@ -50,8 +51,6 @@ class _Compiling(local):
     """Whether it is within `as_a_whole`."""
     depth = 0
     """Functions, each for the one before."""
-    parts = 0
-    """Functions that are done."""
     options: "tuple[_Shared, ...]" = ()
     """Those of its parts: of functions in Python, and of those that numba has ready."""
     apart: frozenset[str] = frozenset()
@@ -71,9 +70,6 @@ class _Depth(Listener):
     def on_end(self, _event: Any) -> None:
         if _compiling.within:
             _compiling.depth -= 1
-            _compiling.parts += 1
-            if _compiling.parts % _PARTS_BETWEEN == 0:
-                gc.collect()
 
 
 register("numba:compile", _Depth())  # type: ignore[no-untyped-call]
@@ -88,7 +84,7 @@ def _waits(name: str) -> bool:
     return _is_part() and name not in _compiling.apart
 
 
-class _Shared(Flags):  # type: ignore[misc]
+class _Shared(Flags):
     """Options of a whole that its parts have in common.
 
     There is one object of the same options, as numba compares them tens of thousands of times.
@@ -107,14 +103,14 @@ _made: list[_Shared] = []
 def _shared(whole: Flags, inline: bool) -> _Shared:
     """Return the options that the parts of a whole have, from its own; whether they are inlined."""
     flags = _Shared()  # type: ignore[no-untyped-call]
-    flags.forceinline = inline
+    setattr(flags, _INLINE, inline)
     for name in _OF_ALL:
         setattr(flags, name, getattr(whole, name))
-    same = (one for one in _made if one.values() == flags.values())
-    found = next(same, flags)
-    if found is flags:
-        _made.append(flags)
-    return found
+    for made in _made:
+        if Flags.__eq__(made, flags):  # type: ignore[no-untyped-call]
+            return made
+    _made.append(flags)
+    return flags
 
 
 if FITS:
@@ -179,7 +175,7 @@ def as_a_whole(apart: frozenset[str]) -> Iterator[None]:
     around = here.within, here.depth, here.apart, here.options
     here.within, here.depth, here.apart, here.options = True, 0, apart, ()
     collects = gc.isenabled()
-    gc.disable()
+    gc.disable()  # looks for garbage take a seventh of all; what there is takes 0.1 GB
     try:
         yield
     finally:
