@@ -34,10 +34,11 @@ from octsim.config.derive import parts_of
 from octsim.config.load import load_and_tell
 from octsim.config.models import Config
 from octsim.config.told import told
-from octsim.datasets.catalog import CATALOG, TARGETS, Stage, jobs
+from octsim.datasets.catalog import CATALOG, TARGETS, jobs
 from octsim.datasets.code import code_of, figures_code
 from octsim.datasets.gallery import drawn_with, run_figures
-from octsim.datasets.keys import inputs_of, keys_read, stages_of
+from octsim.datasets.keys import inputs_of, jobs_of, keys_read, stages_of
+from octsim.datasets.stage import Stage
 from octsim.stages.cost_estimate import check_budget, expected
 from octsim.stages.run_id import begin, is_latest
 from octsim.stages.workload import shares_of
@@ -169,7 +170,7 @@ onstart:
 
 
 onsuccess:
-    for stage in [*jobs(beside=False), *sorted(PLANNED.intersection(jobs(beside=True)))]:
+    for stage in [*jobs_of(run), *sorted(PLANNED.intersection(jobs(beside=True)))]:
         found = Path(f"{FOLDER}/logs/{stage}.log")
         # there is none of what was not asked for
         lines = found.read_text("utf-8").splitlines() if found.is_file() else []
@@ -213,7 +214,7 @@ rule share:
         "workflow/scripts/job.py"
 
 
-for name, rows in (jobs(beside=False) | jobs(beside=True)).items():
+for name, rows in (jobs_of(run) | jobs(beside=True)).items():
 
     rule:
         name:

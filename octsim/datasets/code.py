@@ -6,11 +6,13 @@ from octsim.base.provenance import source_digest
 from octsim.config.grid import combinations
 from octsim.config.models import Config
 from octsim.config.scheme import scheme_of
-from octsim.datasets.catalog import CATALOG, LIGHT, RAYS, SUMMING, Figure
+from octsim.datasets.catalog import CATALOG
+from octsim.datasets.stage import LIGHT, RAYS, SUMMING, Figure
 from octsim.schemes.table import COUNTED_RAYS, LIGHT_PATHS, SCHEMES
 
 NO_RESULT = (
     "octsim.config.archive", "octsim.datasets.catalog", "octsim.datasets.gallery",
+    "octsim.datasets.stage",
     "octsim.instrument.point_store", "octsim.instrument.points", "octsim.schemes.cost",
     "octsim.schemes.table",
 )  # fmt: skip

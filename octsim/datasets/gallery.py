@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from octsim.config.models import Config
-from octsim.datasets.catalog import CATALOG, STAGES, Figure
+from octsim.datasets.catalog import CATALOG, STAGES
 from octsim.datasets.keys import stage_axes
+from octsim.datasets.stage import Figure
 
 SPIRAL = Figure("figure_1", "octsim.figures.beam:figure_1", "spiral on which rays start")
 """The figure of a run that needs no dataset."""

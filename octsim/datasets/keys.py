@@ -6,7 +6,8 @@ from octsim.config.derive import by_light_paths, parts_of
 from octsim.config.grid import Axis, axes, combinations
 from octsim.config.models import Config
 from octsim.config.scheme import light_keys, scheme_of
-from octsim.datasets.catalog import CATALOG, LIGHT, RAYS, STAGES, SUMMING, Stage
+from octsim.datasets.catalog import CATALOG, STAGES, jobs
+from octsim.datasets.stage import LIGHT, RAYS, SUMMING, Stage
 
 _DECIDING = ("tracing.scheme", "tracing.preset", "sweep.focus")
 """Keys that decide which others are read."""
@@ -64,6 +65,12 @@ def light_of(config: Config) -> frozenset[str]:
 def stages_of(config: Config) -> tuple[str, ...]:
     """Return the datasets of a run: all but those of light that its schemes do not have."""
     return tuple(name for name in STAGES if _exists(name, config))
+
+
+def jobs_of(config: Config) -> dict[str, tuple[Stage, ...]]:
+    """Return the jobs of a run, and the datasets that each makes."""
+    there = stages_of(config)
+    return {name: rows for name, rows in jobs(beside=False).items() if rows[0].name in there}
 
 
 def _exists(stage: str, config: Config) -> bool:

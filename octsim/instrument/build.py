@@ -68,16 +68,6 @@ def polarisation_of(config: Config) -> Polarisation:
     return Polarisation(state, analyser)
 
 
-def most_nodes(config: Config) -> int:
-    """Return the most wavenumbers at which the field of any diameter of the sweep is solved."""
-    # here, as rays need none of it
-    from octsim.schemes.fullwave.cylinder_on_plane import cylinder_on_plane
-    from octsim.schemes.fullwave.orders import most_nodes
-
-    largest = cylinder_on_plane(scene_of(config, config.sweep.diameters.stop))
-    return most_nodes(largest, optics_of(config).band, config.tracing.accuracy)
-
-
 def optics_of(config: Config) -> Optics:
     """Return what every scheme works with."""
     k = config.spectrum.wavenumbers()

@@ -9,12 +9,13 @@ from typing import NamedTuple
 
 from octsim.base.errors import ConfigError
 from octsim.base.files import standing
-from octsim.config.derive import counting_rays
+from octsim.config.derive import by_light_paths, counting_rays
 from octsim.config.grid import axes, combinations
 from octsim.config.models import Config
 from octsim.config.scheme import options_of, scheme_of
-from octsim.datasets.catalog import CATALOG, Stage
-from octsim.datasets.keys import keys_behind
+from octsim.datasets.catalog import CATALOG
+from octsim.datasets.keys import keys_behind, stages_of
+from octsim.datasets.stage import RAYS, Stage
 from octsim.instrument.point_store import open_store
 from octsim.schemes.cost import PointCost
 from octsim.stages.workload import point_cost
@@ -107,7 +108,7 @@ def estimate(config: Config, measured: Callable[[str, PointCost], PointCost]) ->
 
     def cost_of(row: Stage, of: Config) -> Cost:
         if row.traces:
-            cost = traced(of, row, sums=row.sums)
+            cost = traced(by_light_paths(of) if RAYS in row.reads else of, row, sums=row.sums)
             if row.counts_rays and not scheme_of(of).counts_rays:
                 cost = cost.and_also(traced(counting_rays(of), row, sums=False))
             return cost
@@ -120,7 +121,12 @@ def estimate(config: Config, measured: Callable[[str, PointCost], PointCost]) ->
         every = combinations(config, *keys_behind(row.name, config))
         return functools.reduce(Cost.and_also, (cost_of(row, at.config) for at in every), Cost())
 
-    stages = {row.name: over(row) for row in CATALOG.values() if row.traces or any(row.per_sample)}
+    there = stages_of(config)
+    stages = {
+        row.name: over(row)
+        for row in CATALOG.values()
+        if row.name in there and (row.traces or any(row.per_sample))
+    }
     return RunEstimate(math.prod(len(axis.rows) for axis in axes(config)), stages)
 
 

@@ -9,11 +9,14 @@ from numpy.typing import NDArray
 
 from octsim.config.grid import Combination
 from octsim.config.models import Config
+from octsim.config.scheme import scheme_of
 from octsim.datasets.files import flags
 from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.streams import Stream, Streamed
-from octsim.instrument.build import most_nodes
+from octsim.instrument.build import optics_of, scene_of
 from octsim.instrument.points import Points
+from octsim.schemes.fullwave.cylinder_on_plane import cylinder_on_plane
+from octsim.schemes.fullwave.orders import most_nodes
 from octsim.schemes.light import TERMS, AccuracyStatus, Waves
 from octsim.stages.scatter import WHOLE, Share
 from octsim.stages.swept_light import swept_diameters, swept_light
@@ -57,15 +60,23 @@ def fields(
         return swept_diameters(config) | named
 
     def nodes(config: Config) -> dict[str, int]:
-        return {"node": most_nodes(config)}
+        return {"node": _most_nodes(config)}
 
     def variables_of(found: Sequence[Waves], at: Combination) -> dict[str, Any]:
-        return _wave_variables(found, most_nodes(at.config))
+        return _wave_variables(found, _most_nodes(at.config))
 
     title = "Field that the detector collects, for each diameter"
     layout = Layout("fields", config, title, own, "diameter", nodes)
     parts = swept_light(layout, law, points or Points(), threads, share, _NOTHING, variables_of)
     return Stream(layout, parts)
+
+
+def _most_nodes(config: Config) -> int:
+    """Return the most wavenumbers at which the field of any diameter is solved."""
+    if scheme_of(config).light != "waves":
+        return 1
+    largest = cylinder_on_plane(scene_of(config, config.sweep.diameters.stop))
+    return most_nodes(largest, optics_of(config).band, config.tracing.accuracy)
 
 
 def _wave_variables(found: Sequence[Waves], nodes: int) -> dict[str, Any]:

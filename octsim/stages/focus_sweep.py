@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.base.threads import each_block
-from octsim.config.derive import by_light_paths
 from octsim.config.grid import Combination
 from octsim.config.models import Config
 from octsim.datasets.files import flags
@@ -43,27 +42,12 @@ def focus_sweep(
         intensity, its estimated error and whether that is as asked, focus (diameter, fraction).
     """
     title = "Intensity over the focus, for the diameters of the focus law"
-    layout = Layout("focus_sweep", config, title, _own, "diameter")
-    return Stream(layout, _swept(layout, lambda of: of, points or Points(), threads, share))
+    layout = Layout("focus_sweep", config, title, law_foci, "diameter")
+    return Stream(layout, swept_foci(layout, lambda of: of, points or Points(), threads, share))
 
 
-@Streamed
-def ray_focus_sweep(
-    config: Config, threads: int = 1, points: Points | None = None, share: Share = WHOLE
-) -> Stream:
-    """Measure the same by light paths, for a scheme whose intensity has no peak over the focus.
-
-    Returns
-    -------
-    Dataset
-        As that of `focus_sweep`, by scheme paths, for combinations of schemes without rays.
-    """
-    title = "Intensity over the focus by light paths, for the focus law of a scheme without rays"
-    layout = Layout("ray_focus_sweep", config, title, _own, "diameter")
-    return Stream(layout, _swept(layout, by_light_paths, points or Points(), threads, share))
-
-
-def _own(config: Config) -> dict[str, Coordinate]:
+def law_foci(config: Config) -> dict[str, Coordinate]:
+    """Return the coordinates of a dataset over the focus law's diameters and fractions."""
     law = config.focus_law
     return {
         "diameter": ("diameter", law.diameters.values()),
@@ -71,13 +55,25 @@ def _own(config: Config) -> dict[str, Coordinate]:
     }
 
 
-def _swept(
+def swept_foci(
     layout: Layout,
     seen_by: Callable[[Config], Config],
     points: Points,
     threads: int,
     share: Share,
 ) -> Iterator[Part]:
+    """Measure the intensity at every diameter and fraction, block after block.
+
+    Parameters
+    ----------
+    layout : Layout
+        Of the dataset that it is kept in.
+    seen_by : callable
+        Returns the config whose instrument looks, of a combination's.
+    points, threads, share
+        Where light is kept, how many threads find it, and which share of it is asked for.
+    """
+
     def foci(at: Combination, span: slice) -> NDArray[np.float64]:
         own = layout.own[at.position]
         return np.outer(own["diameter"][1][span], own["fraction"][1])

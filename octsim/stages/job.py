@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from octsim.base.named import called, named, names
 from octsim.config.grid import without_grid
 from octsim.config.models import Config
-from octsim.datasets.catalog import Stage
 from octsim.datasets.files import opened, read, write
+from octsim.datasets.stage import Stage
 from octsim.datasets.streams import Streamed
 from octsim.datasets.writer import write_stream
 from octsim.stages.progress import watched

@@ -7,7 +7,7 @@ from octsim.config.grid import combinations
 from octsim.config.models import Config
 from octsim.config.scheme import options_of, scheme_of
 from octsim.datasets.catalog import CATALOG
-from octsim.datasets.keys import keys_behind
+from octsim.datasets.keys import keys_behind, stages_of
 from octsim.schemes.cost import PointCost
 
 SCATTERED = tuple(row.name for row in CATALOG.values() if row.traces)
@@ -62,7 +62,8 @@ def shares_of(config: Config) -> dict[str, int]:
     They are of ``scatter.minutes`` of processor time each, or of one block where that takes longer,
     by rates that are the same everywhere: where a run is made does not change its jobs.
     """
-    return {stage: _shares(stage, config) for stage in SCATTERED}
+    there = stages_of(config)
+    return {stage: _shares(stage, config) for stage in SCATTERED if stage in there}
 
 
 def _shares(stage: str, config: Config) -> int:

@@ -224,3 +224,46 @@ def test_an_update_never_runs_the_old_code(tmp_path: Path) -> None:
 
 def test_what_compiles_as_a_whole_fits_this_numba() -> None:
     assert importlib.import_module("octsim.base.compile_whole").FITS
+
+
+SHARED = """
+from numba.core.event import Listener, register
+from numba.extending import register_jitable
+from octsim.base.compiled import compiled
+
+@register_jitable
+def half(x):
+    return max(x, 0.0) / 2
+
+@register_jitable(forceinline=True)
+def inlined(x):
+    return half(x) + 1
+
+@register_jitable
+def called(x):
+    return half(x) + 2
+
+@compiled()
+def double(x):
+    return inlined(x) + called(x) + half(4 * x)
+
+@compiled(fastmath=True)
+def again(x):
+    return inlined(x) + called(x)
+
+names = []
+
+class Names(Listener):
+    def on_start(self, event):
+        names.append(event.data["dispatcher"].py_func.__name__)
+    def on_end(self, event):
+        pass
+
+register("numba:compile", Names())
+print(double(2.0), names.count("half"), again(2.0), names.count("half"))
+"""
+
+
+def test_a_part_is_compiled_once_for_all_callers_of_the_same_arithmetic(tmp_path: Path) -> None:
+    (tmp_path / "shared.py").write_text(SHARED, encoding="utf-8")
+    assert said(run(tmp_path, tmp_path / "kept", "import shared"))[0] == "9.0 1 5.0 2"

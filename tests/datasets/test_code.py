@@ -18,14 +18,17 @@ DIGESTS = f"""
 import json
 from octsim.base.provenance import source_digest
 from octsim.config.load import load_config
-from octsim.datasets.catalog import CATALOG
+from octsim.datasets.catalog import TARGETS
 from octsim.datasets.code import code_of
+from octsim.datasets.keys import stages_of
+def all_of(config):
+    return (*stages_of(config), *TARGETS)
 found = {{name: source_digest(name) for name in {KERNELS}}}
 for scheme in ("vogel", "paths"):
     config = load_config({{"tracing": {{"scheme": scheme}}}})
-    found |= {{f"{{scheme}} {{stage}}": code_of(stage, config) for stage in CATALOG}}
+    found |= {{f"{{scheme}} {{stage}}": code_of(stage, config) for stage in all_of(config)}}
 config = load_config({{"processing": {{"estimator": "maximum_likelihood"}}}})
-found |= {{f"model {{stage}}": code_of(stage, config) for stage in CATALOG}}
+found |= {{f"model {{stage}}": code_of(stage, config) for stage in all_of(config)}}
 print(json.dumps(found))
 """
 

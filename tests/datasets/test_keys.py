@@ -8,9 +8,9 @@ from gridded import gridded
 from octsim.config.derive import parts_of
 from octsim.config.load import load_config
 from octsim.config.models import Config
-from octsim.datasets.catalog import STAGES, Stage, jobs
 from octsim.datasets.gallery import figures_of
-from octsim.datasets.keys import inputs_of, keys_read, stage_axes
+from octsim.datasets.keys import inputs_of, jobs_of, keys_read, stage_axes, stages_of
+from octsim.datasets.stage import Stage
 
 
 @pytest.mark.parametrize(
@@ -22,7 +22,7 @@ from octsim.datasets.keys import inputs_of, keys_read, stage_axes
             "fourier", "phase_slope"}),
         ("focus_scan.diameter", {"focus_scan"}),
         ("focus_law.fraction.num", {"focus_sweep", "gaussian_fits", "focus_law"}),
-        ("scene.gap", set(STAGES)),
+        ("scene.gap", set(stages_of(load_config()))),
         ("tracing.accuracy", set()),
     ],
 )  # fmt: skip
@@ -33,7 +33,7 @@ def test_a_stage_has_the_axes_of_the_keys_it_depends_on(key: str, stages: set[st
         "scene.gap": ["1 nm", "5 nm"], "tracing.accuracy": [1e-3, 1e-4],
     }  # fmt: skip
     config = gridded({key: values[key]}, GIVEN)
-    assert {stage for stage in STAGES if stage_axes(stage, config)} == stages
+    assert {stage for stage in stages_of(config) if stage_axes(stage, config)} == stages
 
 
 def made_anew(before: Config, after: Config) -> set[str]:
@@ -43,7 +43,7 @@ def made_anew(before: Config, after: Config) -> set[str]:
         return dict(parts_of(config.to_dict(), *keys_read(row.name, config)))
 
     names, anew = set[str](), set[str]()
-    for job, rows in jobs(beside=False).items():
+    for job, rows in jobs_of(after).items():
         sources = {name for row in rows for name in inputs_of(row, after)}
         if sources & names or any(read(row, before) != read(row, after) for row in rows):
             anew.add(job)

@@ -7,7 +7,7 @@ from made_runs import every_stage
 
 import octsim
 from octsim.config.grid import combinations
-from octsim.datasets.catalog import STAGES
+from octsim.datasets.keys import stages_of
 from octsim.datasets.reader import Stored
 from octsim.stages import workload
 
@@ -17,7 +17,7 @@ def test_a_dataset_over_a_grid_holds_that_of_every_plain_config(name: str) -> No
     config, whole = run_of_grid(name)
     for at in combinations(config):
         plain = every_stage(at.config)
-        for stage in STAGES:
+        for stage in stages_of(config):
             swept = "focus" if stage == "focus_scan" else "diameter"
             part, alone = Stored(whole[stage], stage, config).part(at, swept=swept), plain[stage]
             if stage == "paths":  # it lists the paths of all combinations
@@ -45,7 +45,7 @@ def test_blocks_threads_and_order_change_no_bit(monkeypatch: pytest.MonkeyPatch)
     for most, config, threads in ((1, configs[0], 1), (2, configs[1], 2), (3, configs[0], 3)):
         monkeypatch.setattr(workload, "_MOST_POINTS", most)
         again = every_stage(config, threads)
-        for stage in STAGES:
+        for stage in stages_of(config):
             for at in combinations(config):
                 swept = "focus" if stage == "focus_scan" else "diameter"
                 one = Stored(whole[stage], stage, configs[0]).part(at, swept=swept)

@@ -83,7 +83,7 @@ _crossings = (MOST_CROSSINGS,)
 MAP = layout(Map, x=_square, y=_square, cos=_square, inside=_square)
 TILE_LINE = layout(
     TileLine, x=_each, y=_each, cos=_each, inside=_each, rough_x=_each, rough_y=_each, t=_each,
-    u=_each, cuts=_crossings, scaled=_each, at_detector=_both, at_rim=_both, roots=_crossings,
+    u=_each, cuts=_crossings, scaled=_both, at_detector=_both, at_rim=_both, roots=_crossings,
     halves=HALVES, exact=_each, rough=_each,
 )  # fmt: skip
 
@@ -165,7 +165,8 @@ def _margin_at_detector(
     `x_0` and `x_1` are what X² is multiplied by at the line's ends, `y_0` and `y_1` what Y² is.
     """
     table, margin, over = cut.bernstein.from_chebyshev[n], line.at_detector, cut.detector_radius**-2
-    margin[: 2 * n] = 0.0
+    for j in range(2 * n):
+        margin[j] = 0.0
     to_bernstein(line.cos, n, table, line.scaled)
     add_square(1.0, line.scaled, n, 1.0, 1.0, margin)
     to_bernstein(line.x, n, table, line.scaled)

@@ -190,7 +190,9 @@ def moments(
         while top >= 0:
             begin, width = below[top], above[top] - below[top]
             top -= 1
-            here[:], here_rough[:] = 0.0, 0.0
+            for a in range(n):
+                for b in range(m):
+                    here[a, b], here_rough[a, b] = 0.0, 0.0
             value, embedded = 0.0, 0.0
             for j in range(15):
                 angle = begin + width * rules.kronrod[j]

@@ -186,10 +186,11 @@ def append_roots(
     int
         How many are there now.
     """
-    if _sign_changes(coefficients, n) == 0:
+    for j in range(n):
+        room[0, j] = coefficients[j]
+    if _sign_changes(room[0], n) == 0:
         return count
-    rounding = _ROUNDED * _largest(coefficients, n)
-    room[0, :n] = coefficients[:n]
+    rounding = _ROUNDED * _largest(room[0], n)
     starts, depths = np.empty(_DEPTH + 2), np.empty(_DEPTH + 2, np.int64)
     starts[0], depths[0], top = 0.0, 0, 0
     while top >= 0 and count < roots.size:

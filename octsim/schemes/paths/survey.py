@@ -27,16 +27,18 @@ COLUMNS = 24
 def recall(survey: Survey, number: int, point: Point, space: Workspace) -> None:
     """Fill a bundle with the rays of one path of the survey, and note its check rays."""
     bundle, checks, nodes = space.bundle, space.checks, survey.orders[0] * survey.orders[1]
-    bundle.followed[:] = False
+    for i in range(nodes + CHECKS):
+        bundle.followed[i] = False
     for i in range(survey.begin[number], survey.end[number]):
         ray = survey.ray[i]
         note_return(
             bundle, ray, point.detector, survey.x[i], survey.y[i], survey.vx[i], survey.vy[i]
         )
         bundle.amplitude[ray] = survey.amplitude[i]
-    checks.s[:], checks.v[:], checks.detected[0] = survey.check_s, survey.check_v, 0
+    checks.detected[0] = 0
     for i in range(CHECKS):
         ray = nodes + i
+        checks.s[i], checks.v[i] = survey.check_s[i], survey.check_v[i]
         checks.weight[i] = 0.0
         if bundle.followed[ray]:
             checks.weight[i] = weight_of(

@@ -1,6 +1,7 @@
 """The nodes of a tile: rays aimed at them, their weights, the field they sum to and its error."""
 
 import math
+from typing import Any
 
 import numpy as np
 from numba.extending import register_jitable
@@ -169,17 +170,24 @@ def sum_tile(point: Point, n: int, m: int, space: Workspace) -> tuple[float, flo
 
 
 @register_jitable
+def _doubled(values: NDArray[Any]) -> NDArray[Any]:
+    """Return room for twice as many values, with these at its begin."""
+    more = np.empty(2 * values.size, values.dtype)
+    for i in range(values.size):
+        more[i] = values[i]
+    return more
+
+
+@register_jitable
 def keep_tile(
     rays: WeightedRays, count: int, code: int, n: int, m: int, space: Workspace
 ) -> tuple[WeightedRays, int]:
     """Note a tile's weighted nodes; return them all, and their number."""
     while count + n * m > rays.path.size:
         rays = WeightedRays(
-            np.concatenate((rays.path, np.empty_like(rays.path))),
-            np.concatenate((rays.amplitude, np.empty_like(rays.amplitude))),
-            np.concatenate((rays.rough_amplitude, np.empty_like(rays.rough_amplitude))),
-            np.concatenate((rays.optical_path_length, np.empty_like(rays.optical_path_length))),
-        )
+            _doubled(rays.path), _doubled(rays.amplitude), _doubled(rays.rough_amplitude),
+            _doubled(rays.optical_path_length),
+        )  # fmt: skip
     for i in range(n):
         for j in range(m):
             amplitude = space.bundle.amplitude[i * m + j]
