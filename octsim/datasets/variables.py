@@ -33,7 +33,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     ),
     "ideal_phase_slope": ("mrad/nm", "phase slope for a spectrum cos(2ndk)"),
     "imaginary": ("1", "imaginary part of the field, without the phase that was taken out"),
-    "intensity": ("1", "intensity, relative to all launched light in phase"),
+    "intensity": ("1", "intensity; 1 is all light in phase, or of waves a mirror in the focus"),
     "intensity_error": ("1", "estimated error of the intensity, over the largest"),
     "intercept": ("um", "intercept of the focus law"),
     "law_centre": ("um", "focus of greatest intensity that the law is fitted to"),
