@@ -4,6 +4,7 @@ import numpy as np
 
 import octsim
 from octsim.config.derive import merge
+from octsim.stages.focus_law import LawScheme
 
 SMALL = {
     "focus_law": {"diameters": {"num": 3}, "fraction": {"num": 9}},
@@ -33,6 +34,6 @@ def test_the_focus_law_of_waves_is_that_of_light_paths_and_says_so() -> None:
     law = octsim.focus_law(config, fits, octsim.ray_focus_sweep(config))
     rays = octsim.load_config(PATHS)
     expected = octsim.focus_law(rays, octsim.gaussian_fits(rays, octsim.focus_sweep(rays)))
-    assert law["law_scheme"].item() == "paths"
+    assert LawScheme(int(law["law_scheme"])) == LawScheme["paths"]
     assert float(law["slope"]) == float(expected["slope"])
     assert float(law["intercept"]) == float(expected["intercept"])
