@@ -16,6 +16,8 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "diameter": ("um", "diameter of the cylinder"),
     "estimated_depth": ("um", "optical depth by the estimator"),
     "estimated_phase": ("rad", "phase by the estimator, at the middle of the band"),
+    "exact_phase_slope": ("mrad/nm", "phase slope by Maxwell's equations, at a few diameters"),
+    "exact_status": ("1", "whether it is compared with Maxwell's equations, or why not"),
     "field_amplitude": ("1", "magnitude of the field at the middle of the band"),
     "field_error": ("1", "estimated error of the field, largest over band and polarisations"),
     "field_phase": ("rad", "phase of the field at the middle of the band, in (-pi, pi]"),
@@ -270,6 +272,20 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "coverage_both": ("1", "fraction of round trips within their standard error"),
     "coverage_noise": ("1", "the same of an instrument as believed, by the statistical error"),
     "coverage_instrument": ("1", "the same without noise, by the systematic error"),
+    # rays beside Maxwell's equations
+    "case": ("1", "instrument that is compared"),
+    "quantity": ("1", "what is varied of it"),
+    "quantity_value": ("1", "what that is"),
+    "ray_scheme": ("1", "scheme of rays"),
+    "focus_mode": ("1", "whether the focus follows the diameter, or is held"),
+    "bound_of_error": ("1", "bound of the relative error of the phase slope"),
+    "ray_phase_slope": ("mrad/nm", "phase slope by rays"),
+    "ray_slope_error": ("1", "relative error of the phase slope by rays"),
+    "ray_phase_error": ("rad", "error of the phase by rays, at the middle of the band"),
+    "ray_visibility_error": ("1", "relative error of the fringe's visibility by rays"),
+    "ray_spectrum_error": ("1", "error of the spectrum over its mean by rays, rms over the band"),
+    "mean_slope_error": ("1", "relative error of the phase slope by rays, mean over diameters"),
+    "share_within": ("1", "share of the diameters where that error is within the bound"),
 }
 _STANDARD_ERROR = "_standard_error"
 
