@@ -14,6 +14,7 @@ from estimators_page import estimators_page
 from markdown import table
 from pydantic import BaseModel
 from spike_page import spike_page
+from validity_page import validity_page
 
 import octsim
 from octsim.config.derive import reference
@@ -372,12 +373,13 @@ if __name__ == "__main__":
         "spike": lambda: spike_page(xr.load_dataset(RESULTS / "causes.nc")),
         "estimators": lambda: estimators_page(xr.load_dataset(RESULTS / "estimators.nc")),
         "calibration": lambda: calibration_page(RESULTS),
+        "validity": lambda: validity_page(xr.load_dataset(RESULTS / "validity.nc")),
     }
     for name, page in pages.items():
         (DOCS / f"{name}.md").write_text(page(), encoding="utf-8")
     drawn = (
         "figure_12", "stability", "tradeoff", "causes", "spike", "estimators", "calibration",
-        "action_potential",
+        "action_potential", "validity",
     )  # fmt: skip
     for figure in drawn:
         shutil.copy(RESULTS / "figures" / f"{figure}.png", DOCS / "figures" / f"{figure}.png")

@@ -284,7 +284,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "ray_phase_error": ("rad", "error of the phase by rays, at the middle of the band"),
     "ray_visibility_error": ("1", "relative error of the fringe's visibility by rays"),
     "ray_spectrum_error": ("1", "error of the spectrum over its mean by rays, rms over the band"),
-    "mean_slope_error": ("1", "relative error of the phase slope by rays, mean over diameters"),
+    "mean_slope_error": ("1", "mean error of the phase slope by rays, over the mean slope"),
     "share_within": ("1", "share of the diameters where that error is within the bound"),
 }
 _STANDARD_ERROR = "_standard_error"

@@ -39,14 +39,15 @@ def beside(slopes: xr.Dataset) -> str:
     if not both.any():
         return f"not compared with Maxwell's equations: {_reason(first, status)}"
     off = rays[both] / exact[both] - 1
-    mean, sure = off.mean(), off.std() / np.sqrt(max(off.size - 1, 1))
+    away, slope = (rays - exact)[both], exact[both].mean()
+    mean, sure = away.mean() / slope, away.std() / np.sqrt(max(off.size - 1, 1)) / abs(slope)
     where = "at the grid's first combination" if config.grid.varied else "here"
     return (
         f"for a {pupil_name(first)} pupil and the estimator {first.processing.estimator}, rays are "
         f"{abs(mean):.1%} ± {sure:.1%} {'high' if mean > 0 else 'low'} {where} "
-        f"({off.min():+.1%} to {off.max():+.1%} at {off.size} diameters; by Maxwell's equations the slope is "
-        f"{exact[both].mean():.3f} mrad/nm there); tracing: {{preset: exact}} takes about "
-        f"{seconds_told(exact_seconds(first))} of processor time"
+        f"({off.min():+.1%} to {off.max():+.1%} at {off.size} diameters, where the slope is "
+        f"{slope:.3f} mrad/nm by Maxwell's equations); tracing: {{preset: exact}} "
+        f"takes about {seconds_told(exact_seconds(first))} of processor time"
     )
 
 

@@ -155,18 +155,35 @@ def _variables(rows: Sequence[Sequence[Compared]]) -> dict[str, Any]:
         variables[name] = ("case", "ray_scheme", *own, "diameter"), np.moveaxis(values, 1, -1)
     kinds = ("case", "ray_scheme", "focus_mode", "estimator")
     error = variables["ray_slope_error"][1]
-    known = np.isfinite(error)
-    count = known.sum(axis=-1)
-    # NaN with fewer than two
-    mean = np.where(known, error, 0.0).sum(axis=-1) / np.where(count > 1, count, np.nan)
-    away = np.where(known, error - mean[..., np.newaxis], 0.0)
+    mean, sure = mean_error(variables["ray_phase_slope"][1], variables["exact_phase_slope"][1])
     variables["mean_slope_error"] = kinds, mean
-    variables["mean_slope_error_standard_error"] = (
-        kinds, np.sqrt((away**2).sum(axis=-1) / np.where(count > 1, count * (count - 1), np.nan))
-    )  # fmt: skip
+    variables["mean_slope_error_standard_error"] = kinds, sure
     within = np.abs(error)[..., np.newaxis] <= np.array(BOUNDS)
     variables["share_within"] = (*kinds, "bound_of_error"), within.mean(axis=-2)
     return variables
+
+
+def mean_error(rays: Array, exact: Array) -> tuple[Array, Array]:
+    """Return by how much rays are off on average, and the standard error of that over diameters.
+
+    It is the mean difference over the mean exact slope, as a slope near zero would rule a mean of
+    ratios; NaN with fewer than two diameters.
+
+    Parameters
+    ----------
+    rays : ndarray, shape (case, scheme, mode, estimator, D)
+        Slopes; NaN where there is no fringe.
+    exact : ndarray, shape (case, mode, estimator, D)
+    """
+    exact = np.broadcast_to(exact[:, np.newaxis], rays.shape)
+    known = np.isfinite(rays) & np.isfinite(exact)
+    count = known.sum(axis=-1)
+    some = np.where(count > 1, count, np.nan)
+    away = np.where(known, rays - exact, 0.0)
+    mean = away.sum(axis=-1) / some
+    spread = np.where(known, away - mean[..., np.newaxis], 0.0)
+    slope = np.where(known, exact, 0.0).sum(axis=-1) / some
+    return mean / slope, np.sqrt((spread**2).sum(axis=-1) / (some * (some - 1))) / np.abs(slope)
 
 
 def summary(table: xr.Dataset) -> str:
