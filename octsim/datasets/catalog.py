@@ -12,7 +12,7 @@ digests, the axes of a grid, the archive and the command line all read this tabl
 from collections.abc import Mapping
 
 from octsim.config.models import Config
-from octsim.datasets.stage import COUNTED, LIGHT, RAYS, SUMMING, Figure, Stage
+from octsim.datasets.stage import COUNTED, LIGHT, RAYS, SUMMING, WAVES, Figure, Stage
 from octsim.schemes.table import SCHEMES
 
 
@@ -106,6 +106,12 @@ _RUN = (
         ),
     ),
     Stage(
+        "maxwell", "octsim.stages.maxwell:maxwell",
+        "Compare phase slopes with Maxwell's equations at some diameters",
+        reads=(WAVES, "processing"), after=("spectra",), light="rays",
+        summary="octsim.stages.maxwell:summary",
+    ),
+    Stage(
         "fourier", "octsim.stages.fourier:fourier",
         "Transform the spectra",
         reads=("processing",), after=("spectra",), job="phase_slope",
@@ -129,7 +135,7 @@ _RUN = (
         per_sample=(1e-7, 12.0),  # magnitude, phase and slopes of half as many components
         figures=(
             Figure("figure_12", "octsim.figures.phase_slope:figure_12",
-                   "phase slope over the diameter"),
+                   "phase slope over the diameter", of=("phase_slope", "maxwell")),
             Figure("grid", "octsim.figures.grid:figure_grid",
                    "phase slope across the grid",
                    without=("component_phase_slope",), over_grid=True),

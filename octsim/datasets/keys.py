@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator, Mapping
 
-from octsim.config.derive import by_light_paths, parts_of
+from octsim.config.derive import by_light_paths, by_waves, parts_of
 from octsim.config.grid import Axis, axes, combinations
 from octsim.config.models import Config
 from octsim.config.scheme import light_keys, scheme_of
 from octsim.datasets.catalog import CATALOG, STAGES, jobs
-from octsim.datasets.stage import LIGHT, RAYS, SUMMING, Stage
+from octsim.datasets.stage import LIGHT, RAYS, SUMMING, WAVES, Stage
 
 _DECIDING = ("tracing.scheme", "tracing.preset", "sweep.focus")
 """Keys that decide which others are read."""
@@ -31,6 +31,8 @@ def _read(stage: str, config: Config) -> Iterator[str]:
             yield from light_keys(config)
         elif key == RAYS:
             yield from light_keys(by_light_paths(config))
+        elif key == WAVES:
+            yield from light_keys(by_waves(config))
         elif key == SUMMING:
             yield from scheme_of(config).summing_keys
         else:
