@@ -24,6 +24,9 @@ Array = NDArray[Any]
 _STEEPEST = 1 - 0.6 / np.pi
 """Of a right angle: how far the contour keeps from the branch points above it."""
 
+_LARGEST_EXPONENT = 600.0
+"""Of e^{imβ} on the contour."""
+
 
 class Contour(NamedTuple):
     """The half of the contour with Re β > 0; the other is its mirror image."""
@@ -46,7 +49,7 @@ def contour(nodes: int, waves: int, least_height: float) -> Contour:
     least_height : float
         Smallest κ₂h of all: the larger M is against it, the farther the contour reaches.
     """
-    farthest = np.arccosh(max(1.0, waves / least_height)) + 1.5
+    farthest = min(np.arccosh(max(1.0, waves / least_height)) + 1.5, _LARGEST_EXPONENT / waves)
     scale = _STEEPEST
 
     def real(tau: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -59,7 +59,20 @@ def scattering(
     j3 = Cylindrical(h3.value.real, h3.slope.real)
     core = _scaled(j3)
     whole = -_solved(_boundary(h2, outside, core, inside), _boundary(j2, outside, core, inside))
-    return Scattering(whole, *_debye(outside, inside, h2, h3))
+    kept = _kept(size * np.maximum(outside.kappa, inside.kappa), waves)
+    return Scattering(*(one * kept for one in (whole, *_debye(outside, inside, h2, h3))))
+
+
+def _kept(size: NDArray[np.float64], waves: int) -> NDArray[np.float64]:
+    """Return 1 for the waves that a size k a κ (K, Y) has, else 0, (K, Y, M + 1, 1, 1).
+
+    Light along the cylinder has fewer. Those beyond scatter nothing but rounding, by which the
+    coupling to the plane, which grows with the order, would be overwhelmed.
+    """
+    largest = size.max()
+    most = size + (waves - largest) * np.cbrt(size / largest)
+    found: NDArray[np.float64] = (np.arange(waves + 1) <= most[..., np.newaxis]).astype(float)
+    return found[..., np.newaxis, np.newaxis]
 
 
 def _side(

@@ -24,7 +24,8 @@ class Orders(NamedTuple):
 
     def raised(self) -> "Orders":
         """Return the next orders to try, or to compare with."""
-        return Orders(*(number + max(2, math.ceil(0.2 * number)) for number in self))
+        waves = self.waves + 2 + math.ceil(0.6 * math.cbrt(self.waves))
+        return Orders(waves, *(number + max(2, math.ceil(0.2 * number)) for number in self[1:]))
 
     @property
     def within_budget(self) -> bool:
