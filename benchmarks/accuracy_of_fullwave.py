@@ -3,8 +3,8 @@
     python benchmarks/accuracy_of_fullwave.py [POINTS] [--seed TEXT] [--write]
 
 Points are drawn anew by the hash of the commit, solved, and compared with
-`dense_waves.dense_waves`; then points of 1 to 2 µm are timed, each alone, beside 3000 rays of scheme
-vogel, and a scan of 501 foci. `--write` puts both into docs/fullwave.md.
+`dense_waves.dense_waves`; then points of 1 to 2 µm are timed, each alone, beside 3000 rays of
+scheme vogel, and a scan of 501 foci. `--write` puts both into docs/fullwave.md.
 """
 
 import argparse

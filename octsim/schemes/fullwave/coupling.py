@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
+from octsim.schemes.fullwave.gauss_legendre import gauss_legendre
 from octsim.schemes.fullwave.plane import reflection
 
 Array = NDArray[Any]
@@ -56,7 +57,7 @@ def contour(nodes: int, waves: int, least_height: float) -> Contour:
         return scale * 2 * np.arctan(np.tanh(tau))  # gd(2τ)
 
     end = float(real(np.array(farthest)) + farthest)
-    x, w = np.polynomial.legendre.leggauss(nodes)
+    x, w = gauss_legendre(nodes)
     reach = end * (x + 1) / 2
     tau = reach / (1 + 2 * scale)
     for _ in range(60):

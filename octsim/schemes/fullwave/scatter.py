@@ -56,16 +56,14 @@ def incoming(operator: Operator, lit: Lit, tolerance: float) -> Waves:
 
 
 def scattered(matrix: Array, e: Array, h: Array) -> Waves:
-    """Return the outgoing waves of matrices (K, Y, M + 1, 2, 2) and regular ones."""
-    return (
-        matrix[..., 0, 0] * e + matrix[..., 0, 1] * h,
-        matrix[..., 1, 0] * e + matrix[..., 1, 1] * h,
-    )
+    """Return the outgoing waves of matrices (2, 2, K, Y, M + 1) and regular ones."""
+    (ee, eh), (he, hh) = matrix
+    return ee * e + eh * h, he * e + hh * h
 
 
 def _direct(operator: Operator, lit: Lit, one: tuple[int, NDArray[np.bool_]]) -> Waves:
     """Solve (1 − T R) b = T a by elimination, for one k and some k_y, and return a + R b there."""
-    waves_of, whole = operator.mirrors[lit.mirror], operator.cylinder.whole[one]
+    waves_of, whole = operator.mirrors[lit.mirror], operator.cylinder.whole[:, :, *one]
     plane = Coupling(*(part[one] for part in operator.plane))
     e, h = lit.e[one], lit.h[one]
     orders = e.shape[-1]
@@ -76,14 +74,14 @@ def _direct(operator: Operator, lit: Lit, one: tuple[int, NDArray[np.bool_]]) ->
         for to in (0, 1)
     ]
     # T falls with the order as fast as R grows: unknowns are b over the root of T
-    scale = np.sqrt(np.abs(whole).max(axis=(-2, -1)))
+    scale = np.sqrt(np.abs(whole).max(axis=(0, 1)))
     inverse = np.divide(1.0, scale, out=np.zeros_like(scale), where=scale > 0)
     balance = inverse[:, :, np.newaxis] * scale[:, np.newaxis]
     # T R, each order of T by itself
     both = np.block(
         [
             [
-                balance * sum(whole[:, :, to, i, np.newaxis] * back[i][of] for i in (0, 1))
+                balance * sum(whole[to, i][..., np.newaxis] * back[i][of] for i in (0, 1))
                 for of in (0, 1)
             ]
             for to in (0, 1)
