@@ -3,7 +3,7 @@ r"""The field of a cylinder on a plane by dense rules: nothing of scheme fullwav
 Other rules (Clenshaw–Curtis over both directions of the pupil, the trapezoid over a contour of its
 own), Fresnel's coefficients of s and p light in place of conical ones, Wait's matrix of scipy's
 Bessel functions, all partial waves of both signs, and one linear system for each k and s_y. What
-they come to is compared with rules a quarter denser, and the difference is the field's own error.
+they come to is compared with denser rules, and the difference is the field's own error.
 """
 
 import math
@@ -50,8 +50,9 @@ class Rules(NamedTuple):
     radial: int
 
     def denser(self) -> "Rules":
-        """Return rules a quarter denser."""
-        return Rules(self.waves + 4, *(math.ceil(1.25 * number) for number in self[1:]))
+        """Return rules a quarter denser, and half along the cylinder, where there are resonances."""
+        denser = Rules(self.waves + 4, *(math.ceil(1.25 * number) for number in self[1:]))
+        return denser._replace(along=math.ceil(1.5 * self.along))
 
 
 class Dense(NamedTuple):
@@ -60,15 +61,20 @@ class Dense(NamedTuple):
     field: Array
     """(2, K)."""
     error: float
-    """The largest difference from rules a quarter denser."""
+    """The largest difference from that of less dense rules."""
 
 
-def dense_waves(slide: Slide, beam: Beam, k: NDArray[np.float64]) -> Dense:
-    """Return the detected field at wavenumbers (K,), 1/µm."""
+def dense_waves(slide: Slide, beam: Beam, k: NDArray[np.float64], wanted: float = 1e-9) -> Dense:
+    """Return the detected field at wavenumbers (K,), 1/µm, by rules made denser until it is sure."""
     rules = _first(slide, beam, float(k.max()))
-    once = field_by(slide, beam, k, rules)
-    twice = field_by(slide, beam, k, rules.denser())
-    return Dense(twice, float(np.abs(twice - once).max()))
+    field = field_by(slide, beam, k, rules)
+    for _ in range(4):
+        rules = rules.denser()
+        coarse, field = field, field_by(slide, beam, k, rules)
+        error = float(np.abs(field - coarse).max())
+        if error <= wanted:
+            break
+    return Dense(field, error)
 
 
 def field_by(slide: Slide, beam: Beam, k: NDArray[np.float64], rules: Rules) -> Array:

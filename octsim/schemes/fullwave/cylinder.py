@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from octsim.schemes.fullwave.bessel import Cylindrical, Kinds, kinds
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
+from octsim.schemes.fullwave.orders import waves_along
 
 Array = NDArray[Any]
 
@@ -60,20 +61,11 @@ def scattering(
         _boundary(one, outside, core, inside) for one in (in_water.outgoing, in_water.regular)
     )
     whole = -_solved(*at_boundary)
-    kept = _kept(size * np.maximum(outside.kappa, inside.kappa.real), waves)
+    # those beyond scatter nothing but rounding, by which the coupling, which grows with the order,
+    # would be overwhelmed
+    kept = np.arange(waves + 1) <= waves_along(scene, along, k, waves)[..., np.newaxis]
     debye = _debye(outside, inside, in_water, within)
     return Scattering(*(one * kept for one in (whole, *debye)))
-
-
-def _kept(size: NDArray[np.float64], waves: int) -> NDArray[np.float64]:
-    """Return 1 for the waves that a size k a κ (K, Y) has, else 0, (K, Y, M + 1).
-
-    Light along the cylinder has fewer. Those beyond scatter nothing but rounding, by which the
-    coupling to the plane, which grows with the order, would be overwhelmed.
-    """
-    largest = size.max()
-    most = size + (waves - largest) * np.cbrt(size / largest)
-    return (np.arange(waves + 1) <= most[..., np.newaxis]).astype(float)
 
 
 def _side(

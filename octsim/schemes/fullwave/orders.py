@@ -3,6 +3,9 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 
 MOST_WAVES = 400
@@ -25,7 +28,9 @@ class Orders(NamedTuple):
     def raised(self) -> "Orders":
         """Return the next orders to try, or to compare with."""
         waves = self.waves + 2 + math.ceil(0.6 * math.cbrt(self.waves))
-        return Orders(waves, *(number + max(2, math.ceil(0.2 * number)) for number in self[1:]))
+        across, contour = (number + max(2, math.ceil(0.2 * number)) for number in self[1:3])
+        # resonances along the cylinder make this integral the slowest to converge
+        return Orders(waves, across, contour, self.along + max(3, math.ceil(0.35 * self.along)))
 
     @property
     def within_budget(self) -> bool:
@@ -45,6 +50,20 @@ def first_orders(
         math.ceil(waves), math.ceil(3 + digits + 0.25 * (size + spread)), math.ceil(14 + size),
         math.ceil(2 + 0.75 * digits + 0.85 * size + 0.5 * spread),
     )  # fmt: skip
+
+
+def waves_along(
+    scene: CylinderOnPlane, along: NDArray[np.float64], k: NDArray[np.float64], waves: int
+) -> NDArray[np.float64]:
+    """Return the largest orders of light with components k_y / k (Y,) at wavenumbers (K,): (K, Y).
+
+    As many beyond k a κ, in cube roots of it, as M is beyond the largest.
+    """
+    index = max(scene.n_water, scene.n_neuron)
+    size = scene.radius * k[:, np.newaxis] * np.sqrt(index**2 - along**2)
+    largest = size.max()
+    found: NDArray[np.float64] = size + (waves - largest) * np.cbrt(size / largest)
+    return found
 
 
 def radial_nodes(point_aperture: float, n_glass: float, focus: float, largest_k: float) -> int:

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from oblique_cylinder import wait
 from numpy.typing import NDArray
+from oblique_cylinder import wait
 from scipy.special import h1vp, hankel1
 
 from octsim.schemes.fullwave.cylinder import scattering
