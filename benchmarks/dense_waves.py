@@ -50,7 +50,7 @@ class Rules(NamedTuple):
     radial: int
 
     def denser(self) -> "Rules":
-        """Return rules a quarter denser, and half along the cylinder, where there are resonances."""
+        """Return denser rules, most of all along the cylinder, where there are resonances."""
         denser = Rules(self.waves + 4, *(math.ceil(1.25 * number) for number in self[1:]))
         return denser._replace(along=math.ceil(1.5 * self.along))
 
@@ -65,7 +65,7 @@ class Dense(NamedTuple):
 
 
 def dense_waves(slide: Slide, beam: Beam, k: NDArray[np.float64], wanted: float = 1e-9) -> Dense:
-    """Return the detected field at wavenumbers (K,), 1/µm, by rules made denser until it is sure."""
+    """Return the detected field at wavenumbers (K,), 1/µm, by ever denser rules."""
     rules = _first(slide, beam, float(k.max()))
     field = field_by(slide, beam, k, rules)
     for _ in range(4):
