@@ -28,6 +28,9 @@ _CHECKED = 3
 _LAST, _BEFORE = slice(-3, None), slice(-6, -3)
 """Chebyshev coefficients that tell of those left out."""
 
+_ROUNDING = 2e-14
+"""Error over the field's size below which more orders bring nothing."""
+
 
 class Point(NamedTuple):
     """What a field is asked for."""
@@ -117,7 +120,8 @@ def solve(
     """
     point = Point(scene, pupil, aperture, focus)
     orders = first_orders(scene, aperture, focus, band[1], accuracy)
-    number, most = first_nodes(scene, band, accuracy), most_nodes(scene, band, accuracy)
+    number = first_nodes(scene, aperture, focus, band, accuracy)
+    most = most_nodes(scene, band, accuracy)
     removed = removed_path(scene, focus)
     best = None
     while orders.within_budget and number <= most:
@@ -135,7 +139,7 @@ def solve(
         best = Waves(
             k, found.values * slow, found.terms * slow, removed, 0.0, error, orders.waves, status
         )
-        if reached:
+        if reached or error < _ROUNDING * largest:
             return best
         if by_orders > by_nodes / 2:
             orders = orders.raised()

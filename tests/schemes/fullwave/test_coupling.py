@@ -14,11 +14,11 @@ K = 8.0
 
 @pytest.mark.parametrize(
     ("waves", "height"),
-    [(2, 0.1), (4, 1.5), (4, 60.0), (22, 8.0), (22, 60.0), (70, 60.0), (9, 1e4)],
+    [(2, 0.1), (4, 1.5), (4, 60.0), (22, 8.0), (22, 60.0), (40, 60.0), (9, 1e4)],
 )
 def test_waves_from_a_perfect_mirror_are_those_of_an_image(waves: int, height: float) -> None:
     # (1/π) ∫ e^{2iκh cos β + isβ} dβ = i^s H_s(2κh)
-    path = contour(60 + waves, waves, height)
+    path = contour(60 + 2 * waves, waves, height)
     order = np.arange(2 * waves + 1)
     both = np.cos(order[:, np.newaxis] * path.angle)
     found = (both * np.exp(2j * height * np.cos(path.angle)) * path.weight).sum(axis=1) * 2 / np.pi

@@ -116,7 +116,7 @@ def test_it_is_that_of_dense_rules(
 ) -> None:
     scene = CylinderOnPlane(*slide)
     orders = first_orders(scene, aperture, focus, 8.0, 1e-10)
-    orders = Orders(orders.waves + 4, *(3 * number for number in orders[1:]))
+    orders = Orders(orders.waves + 4, *(5 * number for number in orders[1:]))
     found = field_at(Point(scene, pupil, aperture, focus), K, orders, 1e-13, Operators()).values
     dense = dense_waves(slide, Beam(pupil, aperture, focus), K)
     assert dense.error <= 1e-9
@@ -164,7 +164,6 @@ EXTREMES = {
     "1e-8": ({}, {"accuracy": 1e-8}),
     "1e-12": ({}, {"accuracy": 1e-12}),
     "1e-12 of 1 nm": ({"diameter": 1e-3}, {"accuracy": 1e-12}),
-    "1e-15": ({}, {"accuracy": 1e-15}),
 }
 
 
