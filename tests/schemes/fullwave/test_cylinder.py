@@ -1,5 +1,7 @@
 """The cylinder's matrices beside the boundary condition by scipy, energy, and the Debye series."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -64,7 +66,7 @@ def test_thin_cylinders_scatter_by_their_area() -> None:
 
 def interfaces(
     k: float, along: float, m: int, n_neuron: float
-) -> tuple[NDArray[np.complex128], ...]:
+) -> tuple[NDArray[Any], ...]:
     """Return what the surface reflects and transmits of waves that go in and out, by scipy."""
     a = 0.6
 
