@@ -2,8 +2,8 @@
 
     config ─┬─ focus_scan
             ├─ focus_sweep ─ gaussian_fits ─ focus_law ─┐      (where sweep.focus is law)
-            └─────────────────────── detections or fields ─┬─ spectra ─ fourier ─ phase_slope
-                                                           └─ paths
+            └─────────────────────── detections or fields ─┬─ spectra ─┬─ fourier ─ phase_slope
+                                                           └─ paths    └─ maxwell (of rays)
 
 A dataset is a row: what it follows from, what makes it, what is drawn from it. The workflow, the
 digests, the axes of a grid, the archive and the command line all read this table.
@@ -106,12 +106,6 @@ _RUN = (
         ),
     ),
     Stage(
-        "maxwell", "octsim.stages.maxwell:maxwell",
-        "Compare phase slopes with Maxwell's equations at some diameters",
-        reads=(WAVES, "processing"), after=("spectra",), light="rays",
-        summary="octsim.stages.maxwell:summary",
-    ),
-    Stage(
         "fourier", "octsim.stages.fourier:fourier",
         "Transform the spectra",
         reads=("processing",), after=("spectra",), job="phase_slope",
@@ -140,6 +134,12 @@ _RUN = (
                    "phase slope across the grid",
                    without=("component_phase_slope",), over_grid=True),
         ),
+    ),
+    Stage(
+        "maxwell", "octsim.stages.maxwell:maxwell",
+        "Compare phase slopes with Maxwell's equations at some diameters",
+        reads=(WAVES, "processing"), after=("spectra",), job="phase_slope", light="rays",
+        summary="octsim.stages.maxwell:summary",
     ),
 )  # fmt: skip
 

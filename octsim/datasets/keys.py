@@ -11,6 +11,8 @@ from octsim.datasets.stage import LIGHT, RAYS, SUMMING, WAVES, Stage
 
 _DECIDING = ("tracing.scheme", "tracing.preset", "sweep.focus")
 """Keys that decide which others are read."""
+_BESIDE = {RAYS: by_light_paths, WAVES: by_waves}
+"""The config of light that is looked at beside a scheme's own."""
 
 
 def keys_read(stage: str, config: Config) -> tuple[str, ...]:
@@ -29,10 +31,10 @@ def _read(stage: str, config: Config) -> Iterator[str]:
     for key in CATALOG[stage].reads if stage in CATALOG else ():
         if key == LIGHT:
             yield from light_keys(config)
-        elif key == RAYS:
-            yield from light_keys(by_light_paths(config))
-        elif key == WAVES:
-            yield from light_keys(by_waves(config))
+        elif key in _BESIDE:
+            # at a preset, whatever the section tracing asks for
+            every = light_keys(_BESIDE[key](config))
+            yield from (one for one in every if not one.startswith("tracing."))
         elif key == SUMMING:
             yield from scheme_of(config).summing_keys
         else:
@@ -72,7 +74,11 @@ def stages_of(config: Config) -> tuple[str, ...]:
 def jobs_of(config: Config) -> dict[str, tuple[Stage, ...]]:
     """Return the jobs of a run, and the datasets that each makes."""
     there = stages_of(config)
-    return {name: rows for name, rows in jobs(beside=False).items() if rows[0].name in there}
+    found = {
+        name: tuple(row for row in rows if row.name in there)
+        for name, rows in jobs(beside=False).items()
+    }
+    return {name: rows for name, rows in found.items() if rows}
 
 
 def _exists(stage: str, config: Config) -> bool:
