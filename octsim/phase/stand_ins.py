@@ -52,4 +52,5 @@ def _apart(values: Array, code: float, others: NDArray[np.bool_]) -> NDArray[np.
         gap = np.maximum(least - code, code - most)
         distant = gap > _GAP * (most - least)
     alone = (code < 0) & (least >= 0)
-    return (count > 0) & farther | (count >= _FEWEST) & (distant | alone)
+    out: NDArray[np.bool_] = (count > 0) & farther | (count >= _FEWEST) & (distant | alone)
+    return out
