@@ -53,7 +53,7 @@ class Design(Section):
         {"start": "1 um", "stop": "2 um", "num": 3}, "of the neuron at rest"
     )
     fills: Annotated[_Numbers, Field(min_length=1)] = key(
-        [0.3, 0.5, 0.7, 1.0, 1.7, 10.0],
+        [0.3, 0.5, 0.7, 1.0, 10.0],
         "of the pupil, by a Gaussian: 1/e² radius of intensity over the pupil's; 10 is even light",
     )
     focus_offsets: FocusRange = key(
