@@ -26,7 +26,7 @@ class Peak(NamedTuple):
 
 
 def peak(foci: Array, values: Array) -> Peak:
-    """Return the greatest of values (F,) at evenly spaced foci (F,), by a parabola through three."""
+    """Return the greatest of values (F,) at even foci (F,), by a parabola through three."""
     if np.isnan(values).any():
         return Peak(np.nan, 0.0)
     place = int(values.argmax())

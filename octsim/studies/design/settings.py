@@ -35,7 +35,9 @@ class Band(NamedTuple):
 def bands_of(config: Config) -> list[Band]:
     """Return the configured band, and those that are tried beside it."""
     own, samples = config.spectrum.wavelength, config.spectrum.samples
-    pairs = dict.fromkeys([(own.min, own.max), *((one.min, one.max) for one in config.design.bands)])
+    pairs = dict.fromkeys(
+        [(own.min, own.max), *((one.min, one.max) for one in config.design.bands)]
+    )
     return [
         Band(f"{1e3 * low:g}-{1e3 * high:g} nm", wavenumbers(low, high, samples))
         for low, high in pairs
@@ -73,8 +75,8 @@ def waves(config: Config, aperture: float) -> Config:
     aperture : float
         Numerical aperture.
     """
-    every = [config.spectrum.wavelength, *config.design.bands]
-    low, high = min(one.min for one in every), max(one.max for one in every)
+    own, others = config.spectrum.wavelength, config.design.bands
+    low, high = min([own.min, *(o.min for o in others)]), max([own.max, *(o.max for o in others)])
     return changed(
         as_far_as(FULL_WAVE, config),
         {

@@ -1,7 +1,6 @@
 """The search for the instrument that knows an expansion best (`snakemake design`)."""
 
 from collections.abc import Iterator
-from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -81,7 +80,7 @@ def design(config: Config, law: xr.Dataset | None = None, threads: int = 1) -> x
         for number, diameter in enumerate(diameters.tolist())
     ]
     found = [one for part in each(column, columns, threads) for one in part]
-    coordinates = {
+    coordinates: dict[str, Any] = {
         "aperture": apertures, "diameter": diameters, "focus_offset": offsets,
         "fill": list(settings.fills), "band": [band.name for band in bands],
         "estimator": list(ESTIMATORS), "parameter": list(PARAMETERS),
@@ -165,18 +164,21 @@ def _table(
         array = np.asarray(values)
         return xr.DataArray(array.reshape(*shape, *array.shape[1:]), dims=(*_PLACES, *further))
 
+    def root(values: xr.DataArray) -> xr.DataArray:
+        return values.copy(data=np.sqrt(values.values))
+
     knowns = [one.known for one in found]
     relative = over([one.relative for one in knowns], "estimator", "parameter")
     statistical = over([one.statistical for one in knowns], "estimator")
-    systematic = 1e3 * expansion * np.sqrt((relative**2).sum("parameter", skipna=False))
-    total = np.sqrt(statistical**2 + systematic**2)
+    systematic = 1e3 * expansion * root(relative.dot(relative, "parameter"))
+    squared = statistical**2 + systematic**2
     seen = xr.Dataset(
         {
             "phase_slope": over([one.slope for one in knowns], "estimator"),
             "statistical_error": statistical,
             "systematic_error": systematic,
-            "total_error": total,
-            "rms_error": np.sqrt((total**2).mean("diameter", skipna=False)),
+            "total_error": root(squared),
+            "rms_error": root(squared.mean("diameter", skipna=False)),
             "slope_error": relative,
             "least_error": over([one.bound for one in knowns]),
             "brightness": over([one.brightness for one in knowns]),

@@ -32,7 +32,8 @@ class Neuron(NamedTuple):
 
     diameter: float
     """At rest, µm."""
-    index: float
+    n_neuron: float
+    """Its refractive index."""
     wavenumber: Array
     """(K,), 1/µm."""
     around: Array
@@ -47,14 +48,14 @@ def _held(**given: object) -> Estimator:
     processing = Processing.model_validate(given)
 
     def estimator(neuron: Neuron, spectra: Array, _: Array) -> Array:
-        depth = neuron.index * neuron.diameter
+        depth = neuron.n_neuron * neuron.diameter
         return series_phases(spectra, neuron.wavenumber, depth, processing)
 
     return estimator
 
 
 def _following(neuron: Neuron, spectra: Array, offset: Array) -> Array:
-    depth = neuron.index * (neuron.diameter + offset)
+    depth = neuron.n_neuron * (neuron.diameter + offset)
     sinusoid = Processing.model_validate({"estimator": "sinusoid"})
     return phases(spectra, neuron.wavenumber, depth, sinusoid).phase
 
@@ -63,7 +64,7 @@ def _likeliest(neuron: Neuron, spectra: Array, _: Array) -> Array:
     """Return the likeliest diameters, as phases of the prediction."""
     k = neuron.wavenumber
     found = maximum_likelihood(spectra, Model(neuron.diameter + OFFSETS, neuron.around))
-    return predicted_phase_slope(neuron.index, k[0], k[-1]) * found
+    return predicted_phase_slope(neuron.n_neuron, k[0], k[-1]) * found
 
 
 ESTIMATORS: Mapping[str, Estimator] = {
@@ -117,7 +118,7 @@ def known(
     """
     middle = OFFSETS.size // 2
     rest = seen.around[middle]
-    depth = np.array([neuron.index * neuron.diameter])
+    depth = np.array([neuron.n_neuron * neuron.diameter])
     fringe = fringe_at(rest[np.newaxis], neuron.wavenumber, depth, seen.error)
     nothing = np.full(len(ESTIMATORS), np.nan)
     brightness, height = float(rest.mean()), _depth_peak(rest, neuron.wavenumber, depth)
