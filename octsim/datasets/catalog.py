@@ -2,8 +2,8 @@
 
     config ─┬─ focus_scan
             ├─ focus_sweep ─ gaussian_fits ─ focus_law ─┐      (where sweep.focus is law)
-            └─────────────────────── detections or fields ─┬─ spectra ─ fourier ─ phase_slope
-                                                           └─ paths
+            └─────────────────────── detections or fields ─┬─ spectra ─┬─ fourier ─ phase_slope
+                                                           └─ paths    └─ maxwell (of rays)
 
 A dataset is a row: what it follows from, what makes it, what is drawn from it. The workflow, the
 digests, the axes of a grid, the archive and the command line all read this table.
@@ -12,7 +12,7 @@ digests, the axes of a grid, the archive and the command line all read this tabl
 from collections.abc import Mapping
 
 from octsim.config.models import Config
-from octsim.datasets.stage import COUNTED, LIGHT, RAYS, SUMMING, Figure, Stage
+from octsim.datasets.stage import COUNTED, LIGHT, RAYS, SUMMING, WAVES, Figure, Stage
 from octsim.schemes.table import SCHEMES
 
 
@@ -129,11 +129,17 @@ _RUN = (
         per_sample=(1e-7, 12.0),  # magnitude, phase and slopes of half as many components
         figures=(
             Figure("figure_12", "octsim.figures.phase_slope:figure_12",
-                   "phase slope over the diameter"),
+                   "phase slope over the diameter", of=("phase_slope", "maxwell")),
             Figure("grid", "octsim.figures.grid:figure_grid",
                    "phase slope across the grid",
                    without=("component_phase_slope",), over_grid=True),
         ),
+    ),
+    Stage(
+        "maxwell", "octsim.stages.maxwell:maxwell",
+        "Compare phase slopes with Maxwell's equations at some diameters",
+        reads=(WAVES, "processing"), after=("spectra",), job="phase_slope", light="rays",
+        summary="octsim.stages.maxwell:summary",
     ),
 )  # fmt: skip
 

@@ -2,15 +2,17 @@
 
 from collections.abc import Iterator, Mapping
 
-from octsim.config.derive import by_light_paths, parts_of
+from octsim.config.derive import by_light_paths, by_waves, parts_of
 from octsim.config.grid import Axis, axes, combinations
 from octsim.config.models import Config
 from octsim.config.scheme import light_keys, scheme_of
 from octsim.datasets.catalog import CATALOG, STAGES, jobs
-from octsim.datasets.stage import LIGHT, RAYS, SUMMING, Stage
+from octsim.datasets.stage import LIGHT, RAYS, SUMMING, WAVES, Stage
 
 _DECIDING = ("tracing.scheme", "tracing.preset", "sweep.focus")
 """Keys that decide which others are read."""
+_BESIDE = {RAYS: by_light_paths, WAVES: by_waves}
+"""The config of light that is looked at beside a scheme's own."""
 
 
 def keys_read(stage: str, config: Config) -> tuple[str, ...]:
@@ -29,8 +31,10 @@ def _read(stage: str, config: Config) -> Iterator[str]:
     for key in CATALOG[stage].reads if stage in CATALOG else ():
         if key == LIGHT:
             yield from light_keys(config)
-        elif key == RAYS:
-            yield from light_keys(by_light_paths(config))
+        elif key in _BESIDE:
+            # at a preset, whatever the section tracing asks for
+            every = light_keys(_BESIDE[key](config))
+            yield from (one for one in every if not one.startswith("tracing."))
         elif key == SUMMING:
             yield from scheme_of(config).summing_keys
         else:
@@ -70,7 +74,11 @@ def stages_of(config: Config) -> tuple[str, ...]:
 def jobs_of(config: Config) -> dict[str, tuple[Stage, ...]]:
     """Return the jobs of a run, and the datasets that each makes."""
     there = stages_of(config)
-    return {name: rows for name, rows in jobs(beside=False).items() if rows[0].name in there}
+    found = {
+        name: tuple(row for row in rows if row.name in there)
+        for name, rows in jobs(beside=False).items()
+    }
+    return {name: rows for name, rows in found.items() if rows}
 
 
 def _exists(stage: str, config: Config) -> bool:

@@ -10,6 +10,8 @@ LIGHT = "(light)"
 """Stands for the keys that the light of a point depends on, which are the scheme's to say."""
 RAYS = "(rays)"
 """Stands for the keys that light depends on by rays, for a scheme that has none."""
+WAVES = "(waves)"
+"""Stands for the keys that light depends on by Maxwell's equations, for a scheme of rays."""
 SUMMING = "(summing)"
 """Stands for the keys of the scheme that a sum over the wavenumbers depends on."""
 
@@ -28,7 +30,8 @@ class Figure:
     caption: str
     """What it shows."""
     of: tuple[str, ...] = ()
-    """Datasets that it is drawn from; without any named, the one whose row it stands in."""
+    """Datasets that it is drawn from, as far as a run has them; without any named, the one whose
+    row it stands in."""
     without: tuple[str, ...] = ()
     """Variables that it does not need, and that may be large."""
     over_grid: bool = False
@@ -82,7 +85,9 @@ class Stage:
     @property
     def needs_light(self) -> bool:
         """Whether it looks for light itself."""
-        return self.traces or any(key.startswith((LIGHT, RAYS, "tracing")) for key in self.reads)
+        return self.traces or any(
+            key.startswith((LIGHT, RAYS, WAVES, "tracing")) for key in self.reads
+        )
 
     @property
     def counts_rays(self) -> bool:

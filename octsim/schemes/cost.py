@@ -13,6 +13,40 @@ _RAY_BYTES = 32  # of the four numbers that are kept of a ray
 _NODE_BYTES = 136  # of a wavenumber, and four complex fields of two polarisations
 
 
+MOST_WAVES = 200
+"""Largest order of partial waves that are solved for."""
+MOST_WAVENUMBERS = 400
+"""Nodes over the band that are solved for."""
+
+
+def partial_waves(size: float, digits: float) -> float:
+    """Return the largest order of partial waves that is usually enough.
+
+    Parameters
+    ----------
+    size : float
+        k n d / 2, of the larger of the indices within and around the cylinder.
+    digits : float
+        −log₁₀ of the accuracy.
+    """
+    return size + (1 + 0.35 * digits) * float(size ** (1 / 3)) + 0.5
+
+
+def wavenumbers(reach: float, band: float, digits: float) -> float:
+    """Return the nodes over the wavenumber that are usually enough.
+
+    Parameters
+    ----------
+    reach : float
+        Optical path of the light that is farthest from that whose phase is taken out, µm.
+    band : float
+        Width of the band, 1/µm.
+    digits : float
+        −log₁₀ of the accuracy.
+    """
+    return 2.5 + 0.75 * band * reach + 1.35 * digits
+
+
 class PointCost(NamedTuple):
     """What the light of one point takes."""
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from octsim.optics.pupil import Pupil
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
+from octsim.schemes.fullwave.gauss_legendre import gauss_legendre
 from octsim.schemes.fullwave.plane import normal, reflection
 
 Array = NDArray[Any]
@@ -77,7 +78,7 @@ def illumination(
     waves, nodes : int
         Largest order M, and Gauss–Legendre nodes over k_x / k > 0.
     """
-    x, w = np.polynomial.legendre.leggauss(nodes)
+    x, w = gauss_legendre(nodes)
     reach = np.sqrt(aperture**2 - along**2)[:, np.newaxis]
     across = reach * (x + 1) / 2
     sideways = np.broadcast_to(along[:, np.newaxis], across.shape)
