@@ -68,7 +68,10 @@ _OF_TWO_KINDS = (
     ["expansion", "drift"],
     ["objective", "pupil"],
 )
-_LISTS = ("processing.window", "scene.layers", "scene.cylinders", "scene.cylinders.shells")
+_LISTS = (
+    "processing.window", "scene.layers", "scene.cylinders", "scene.cylinders.shells",
+    "design.fills", "design.apertures", "design.bands",
+)  # fmt: skip
 
 
 def explain(error: ErrorDetails) -> str:

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 
+from octsim.datasets.design_variables import DESIGN
+
 MEANINGS: Mapping[str, tuple[str, str]] = {
     # name: (units, long_name)
     "accuracy_status": ("1", "whether the accuracy that was asked for is reached"),
@@ -270,6 +272,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "coverage_both": ("1", "fraction of round trips within their standard error"),
     "coverage_noise": ("1", "the same of an instrument as believed, by the statistical error"),
     "coverage_instrument": ("1", "the same without noise, by the systematic error"),
+    **DESIGN,
 }
 _STANDARD_ERROR = "_standard_error"
 
