@@ -331,15 +331,16 @@ Written by `make docs` from `results/thesis/tradeoff.nc`; do not edit. `make doc
 
 One key of the config is varied at a time: `rays` and `min_amplitude` with the scheme `vogel`, the
 accuracy of Maxwell's equations with `fullwave`, all else with `paths`, where the accuracy is 1e-6
-unless it is what is varied. Errors are those from a scheme's own limit, unless they are said to be
-from Maxwell: of `fullwave` that at 1e-9, of rays a reference, `paths` at {accuracy:g} and {most}
-intersections, of the same diameters, foci and wavenumbers. With 1e-8 and 30 intersections the
-latter moves by {check}, at {part} of the diameters. The error of I(k) is max |ΔI| / max I over k, the worst and
-the median over the diameters, and at how many it is above the accuracy that was asked for (fewer
-intersections than the light takes are no matter of the accuracy). The slope of fewer or more
-`samples` is compared with that of {samples}, the slope of fewer or more diameters with that of
-{finer} times the run's steps; the law's focus with the reference's, at its largest difference over
-the sweep. A dash stands for what was not measured, or for a law without a peak.
+unless it is what is varied. Errors are those from a scheme's own limit, unless they are said to
+be from Maxwell: of `fullwave` that at 1e-9, of rays a reference, `paths` at {accuracy:g} and
+{most} intersections, of the same diameters, foci and wavenumbers. With 1e-8 and 30 intersections
+the latter moves by {check}, at {part} of the diameters. The error of I(k) is max |ΔI| / max I
+over k, the worst and the median over the diameters, and at how many it is above the accuracy that
+was asked for (fewer intersections than the light takes are no matter of the accuracy). The slope
+of fewer or more `samples` is compared with that of {samples}, the slope of fewer or more
+diameters with that of {finer} times the run's steps; the law's focus with the reference's, at its
+largest difference over the sweep. A dash stands for what was not measured, or for a law without a
+peak.
 
 Costs are those of the sweep's {diameters} diameters on one thread: segments traced a diameter (for
 `paths` those that look for the paths too), processor time to trace and sum, and by how much the
