@@ -151,11 +151,13 @@ _BESIDE = (
     Stage(
         "tradeoff", "octsim.studies.tradeoff.study:tradeoff",
         "Measure error and cost, one setting after the other",
-        reads=(*_COMPARED, "focus_law"), beside=True,
+        reads=(*_COMPARED, "polarisation", "focus_law"), beside=True,
         summary="octsim.studies.tradeoff.study:summary",
         figures=(
             Figure("tradeoff", "octsim.figures.tradeoff:tradeoff_figure",
                    "error over cost of each setting"),
+            Figure("truth", "octsim.figures.tradeoff:truth_figure",
+                   "error from Maxwell's equations over time"),
         ),
     ),
     Stage(
