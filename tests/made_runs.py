@@ -5,7 +5,6 @@ from pathlib import Path
 import xarray as xr
 
 import octsim
-import octsim.stages.maxwell
 from octsim.datasets.files import write
 from octsim.datasets.keys import stages_of
 
@@ -63,8 +62,6 @@ def every_stage(config: octsim.Config, threads: int = 1) -> dict[str, xr.Dataset
     detected, fields = made.get("detections"), made.get("fields")
     made["spectra"] = octsim.spectra(config, detected, threads, fields)
     made["paths"] = octsim.light_paths(config, detected, fields)
-    if "maxwell" in there:
-        made["maxwell"] = octsim.stages.maxwell.maxwell(config, made["spectra"])
     made["fourier"] = octsim.fourier(config, made["spectra"])
     made["phase_slope"] = octsim.phase_slope(config, made["fourier"])
     return made

@@ -2,8 +2,8 @@
 
     config ─┬─ focus_scan
             ├─ focus_sweep ─ gaussian_fits ─ focus_law ─┐      (where sweep.focus is law)
-            └─────────────────────── detections or fields ─┬─ spectra ─┬─ fourier ─ phase_slope
-                                                           └─ paths    └─ maxwell (of rays)
+            └─────────────────────── detections or fields ─┬─ spectra ─ fourier ─ phase_slope
+                                                           └─ paths
 
 A dataset is a row: what it follows from, what makes it, what is drawn from it. The workflow, the
 digests, the axes of a grid, the archive and the command line all read this table.
@@ -12,7 +12,7 @@ digests, the axes of a grid, the archive and the command line all read this tabl
 from collections.abc import Mapping
 
 from octsim.config.models import Config
-from octsim.datasets.stage import COUNTED, LIGHT, RAYS, SUMMING, WAVES, Figure, Stage
+from octsim.datasets.stage import COUNTED, LIGHT, RAYS, SUMMING, Figure, Stage
 from octsim.schemes.table import SCHEMES
 
 
@@ -129,17 +129,11 @@ _RUN = (
         per_sample=(1e-7, 12.0),  # magnitude, phase and slopes of half as many components
         figures=(
             Figure("figure_12", "octsim.figures.phase_slope:figure_12",
-                   "phase slope over the diameter", of=("phase_slope", "maxwell")),
+                   "phase slope over the diameter"),
             Figure("grid", "octsim.figures.grid:figure_grid",
                    "phase slope across the grid",
                    without=("component_phase_slope",), over_grid=True),
         ),
-    ),
-    Stage(
-        "maxwell", "octsim.stages.maxwell:maxwell",
-        "Compare phase slopes with Maxwell's equations at some diameters",
-        reads=(WAVES, "processing"), after=("spectra",), job="phase_slope", light="rays",
-        summary="octsim.stages.maxwell:summary",
     ),
 )  # fmt: skip
 
@@ -157,11 +151,13 @@ _BESIDE = (
     Stage(
         "tradeoff", "octsim.studies.tradeoff.study:tradeoff",
         "Measure error and cost, one setting after the other",
-        reads=(*_COMPARED, "focus_law"), beside=True,
+        reads=(*_COMPARED, "polarisation", "focus_law"), beside=True,
         summary="octsim.studies.tradeoff.study:summary",
         figures=(
             Figure("tradeoff", "octsim.figures.tradeoff:tradeoff_figure",
                    "error over cost of each setting"),
+            Figure("truth", "octsim.figures.tradeoff:truth_figure",
+                   "error from Maxwell's equations over time"),
         ),
     ),
     Stage(

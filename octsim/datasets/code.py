@@ -7,8 +7,8 @@ from octsim.config.grid import combinations
 from octsim.config.models import Config
 from octsim.config.scheme import scheme_of
 from octsim.datasets.catalog import CATALOG
-from octsim.datasets.stage import LIGHT, RAYS, SUMMING, WAVES, Figure
-from octsim.schemes.table import COUNTED_RAYS, FULL_WAVE, LIGHT_PATHS, SCHEMES
+from octsim.datasets.stage import LIGHT, RAYS, SUMMING, Figure
+from octsim.schemes.table import COUNTED_RAYS, LIGHT_PATHS, SCHEMES
 
 NO_RESULT = (
     "octsim.config.archive", "octsim.datasets.catalog", "octsim.datasets.gallery",
@@ -38,8 +38,6 @@ def _schemes(stage: str, config: Config) -> Iterator[str]:
         yield from (scheme.module for scheme in SCHEMES.values())
     elif ("processing" in row.reads and _compares_with_a_model(config)) or RAYS in row.reads:
         yield LIGHT_PATHS.module
-    elif WAVES in row.reads:
-        yield FULL_WAVE.module
     elif {LIGHT, SUMMING} & set(row.reads):
         for at in combinations(config, "tracing.scheme", "tracing.preset"):
             yield scheme_of(at.config).module

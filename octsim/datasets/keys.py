@@ -2,17 +2,15 @@
 
 from collections.abc import Iterator, Mapping
 
-from octsim.config.derive import by_light_paths, by_waves, parts_of
+from octsim.config.derive import by_light_paths, parts_of
 from octsim.config.grid import Axis, axes, combinations
 from octsim.config.models import Config
 from octsim.config.scheme import light_keys, scheme_of
 from octsim.datasets.catalog import CATALOG, STAGES, jobs
-from octsim.datasets.stage import LIGHT, RAYS, SUMMING, WAVES, Stage
+from octsim.datasets.stage import LIGHT, RAYS, SUMMING, Stage
 
 _DECIDING = ("tracing.scheme", "tracing.preset", "sweep.focus")
 """Keys that decide which others are read."""
-_BESIDE = {RAYS: by_light_paths, WAVES: by_waves}
-"""The config of light that is looked at beside a scheme's own."""
 
 
 def keys_read(stage: str, config: Config) -> tuple[str, ...]:
@@ -31,9 +29,9 @@ def _read(stage: str, config: Config) -> Iterator[str]:
     for key in CATALOG[stage].reads if stage in CATALOG else ():
         if key == LIGHT:
             yield from light_keys(config)
-        elif key in _BESIDE:
+        elif key == RAYS:
             # at a preset, whatever the section tracing asks for
-            every = light_keys(_BESIDE[key](config))
+            every = light_keys(by_light_paths(config))
             yield from (one for one in every if not one.startswith("tracing."))
         elif key == SUMMING:
             yield from scheme_of(config).summing_keys

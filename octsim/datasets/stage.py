@@ -10,8 +10,6 @@ LIGHT = "(light)"
 """Stands for the keys that the light of a point depends on, which are the scheme's to say."""
 RAYS = "(rays)"
 """Stands for the keys that light depends on by rays, for a scheme that has none."""
-WAVES = "(waves)"
-"""Stands for the keys that light depends on by Maxwell's equations, for a scheme of rays."""
 SUMMING = "(summing)"
 """Stands for the keys of the scheme that a sum over the wavenumbers depends on."""
 
@@ -85,9 +83,7 @@ class Stage:
     @property
     def needs_light(self) -> bool:
         """Whether it looks for light itself."""
-        return self.traces or any(
-            key.startswith((LIGHT, RAYS, WAVES, "tracing")) for key in self.reads
-        )
+        return self.traces or any(key.startswith((LIGHT, RAYS, "tracing")) for key in self.reads)
 
     @property
     def counts_rays(self) -> bool:

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from octsim.figures.style import BLACK, GREEN, PURPLE, component_colour, label, tell_doubts, title
+from octsim.figures.style import BLACK, GREEN, component_colour, label, tell_doubts, title
 
 _MARKERS = ".x+1234"
 
@@ -27,11 +27,8 @@ def draw_components(
         )  # fmt: skip
 
 
-def figure_12(slopes: xr.Dataset, exact: xr.Dataset | None = None) -> Figure:
-    """Draw the phase slope by component, the ideal curve and the prediction (thesis fig. 12).
-
-    Of a run by rays it has Maxwell's slopes beside, at the diameters where they were compared.
-    """
+def figure_12(slopes: xr.Dataset) -> Figure:
+    """Draw the phase slope by component, the ideal curve and the prediction (thesis fig. 12)."""
     figure = Figure()
     axes = figure.subplots()
     diameter = slopes["diameter"]
@@ -46,20 +43,11 @@ def figure_12(slopes: xr.Dataset, exact: xr.Dataset | None = None) -> Figure:
         diameter, slopes["ideal_phase_slope"],
         color=GREEN, linestyle="--", label="ideal spectrum cos(2ndk)",
     )  # fmt: skip
-    if exact is not None:
-        for estimator, marker in (("run", "D"), ("least_squares", "o")):
-            axes.plot(
-                exact["diameter"], exact["exact_phase_slope"].sel(by=estimator),
-                color=PURPLE, marker=marker, markersize=4, linestyle=":", linewidth=1.0,
-                label=f"Maxwell, {'same estimator' if estimator == 'run' else 'least squares'}",
-            )  # fmt: skip
     predicted = float(slopes["predicted_phase_slope"])
     axes.axhline(
         predicted, color=BLACK, linestyle="-.", label=f"prediction {predicted:.2f} mrad/nm"
     )
     shown = np.concatenate((slopes["phase_slope"].values, slopes["ideal_phase_slope"].values))
-    if exact is not None:
-        shown = np.append(shown, exact["exact_phase_slope"].values)
     shown = shown[np.isfinite(shown)] if np.isfinite(shown).any() else np.array([predicted])
     margin = 0.15 * max(float(np.ptp(shown)), 0.1)
     axes.set_ylim(shown.min() - margin, shown.max() + 3 * margin)

@@ -16,10 +16,10 @@ from octsim.datasets.stage import Stage
 @pytest.mark.parametrize(
     ("key", "stages"),
     [
-        ("processing.window", {"fourier", "phase_slope", "maxwell"}),
+        ("processing.window", {"fourier", "phase_slope"}),
         ("spectrum.wavelength.min", {
             "focus_scan", "focus_sweep", "gaussian_fits", "focus_law", "spectra", "paths",
-            "fourier", "phase_slope", "maxwell"}),
+            "fourier", "phase_slope"}),
         ("focus_scan.diameter", {"focus_scan"}),
         ("focus_law.fraction.num", {"focus_sweep", "gaussian_fits", "focus_law"}),
         ("scene.gap", set(stages_of(load_config()))),
