@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 from calibration_page import calibration_page
+from design_page import design_page
 from estimators_page import estimators_page
 from markdown import table
 from pydantic import BaseModel
@@ -372,12 +373,13 @@ if __name__ == "__main__":
         "spike": lambda: spike_page(xr.load_dataset(RESULTS / "causes.nc")),
         "estimators": lambda: estimators_page(xr.load_dataset(RESULTS / "estimators.nc")),
         "calibration": lambda: calibration_page(RESULTS),
+        "design": lambda: design_page(xr.load_dataset(RESULTS / "design.nc")),
     }
     for name, page in pages.items():
         (DOCS / f"{name}.md").write_text(page(), encoding="utf-8")
     drawn = (
         "figure_12", "stability", "tradeoff", "causes", "spike", "estimators", "calibration",
-        "action_potential",
+        "action_potential", "design",
     )  # fmt: skip
     for figure in drawn:
         shutil.copy(RESULTS / "figures" / f"{figure}.png", DOCS / "figures" / f"{figure}.png")

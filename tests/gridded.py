@@ -26,6 +26,7 @@ GRIDS: dict[str, dict[str, Any]] = {
     "band": {"spectrum.wavelength.min": ["650 nm", "700 nm"], "tracing.rays": [150, 160]},
     "sizes": {"sweep.diameters.num": [5, 9, 3], "spectrum.samples": [40, 33]},
     "schemes": {"tracing.scheme": ["vogel", "paths"], "focus_scan.focus.num": [5, 4]},
+    "waves": {"tracing.scheme": ["vogel", "fullwave"], "scene.gap": ["0 nm", "30 nm"]},
     "estimators": {"processing.estimator": ["fft", "sinusoid", "esprit", "maximum_likelihood"]},
     "preset": {
         "combine": "zip", "tracing.preset": ["draft", "draft", "standard"],

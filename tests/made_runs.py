@@ -6,6 +6,7 @@ import xarray as xr
 
 import octsim
 from octsim.datasets.files import write
+from octsim.datasets.keys import stages_of
 
 TINY = {
     "run": "tiny",
@@ -50,10 +51,17 @@ def every_stage(config: octsim.Config, threads: int = 1) -> dict[str, xr.Dataset
     made = {"focus_scan": octsim.focus_scan(config, threads)}
     made["focus_sweep"] = octsim.focus_sweep(config, threads)
     made["gaussian_fits"] = octsim.gaussian_fits(config, made["focus_sweep"])
-    made["focus_law"] = octsim.focus_law(config, made["gaussian_fits"])
-    made["detections"] = octsim.detections(config, made["focus_law"], threads)
-    made["spectra"] = octsim.spectra(config, made["detections"], threads)
-    made["paths"] = octsim.light_paths(config, made["detections"])
+    there = stages_of(config)
+    if "ray_focus_sweep" in there:
+        made["ray_focus_sweep"] = octsim.ray_focus_sweep(config, threads)
+    by_rays = made.get("ray_focus_sweep")
+    made["focus_law"] = octsim.focus_law(config, made["gaussian_fits"], by_rays)
+    for name, work in (("detections", octsim.detections), ("fields", octsim.fields)):
+        if name in there:
+            made[name] = work(config, made["focus_law"], threads)
+    detected, fields = made.get("detections"), made.get("fields")
+    made["spectra"] = octsim.spectra(config, detected, threads, fields)
+    made["paths"] = octsim.light_paths(config, detected, fields)
     made["fourier"] = octsim.fourier(config, made["spectra"])
     made["phase_slope"] = octsim.phase_slope(config, made["fourier"])
     return made

@@ -65,6 +65,12 @@ def impossible(config: Config) -> Iterator[str]:
             f"spectrum.wavelength.min: {format_length(band.min)} given; it must be below "
             f"spectrum.wavelength.max = {format_length(band.max)}"
         )
+    for place, tried in enumerate(config.design.bands):
+        if not tried.min < tried.max:
+            yield (
+                f"design.bands.{place}.min: {format_length(tried.min)} given; it must be below "
+                f"design.bands.{place}.max = {format_length(tried.max)}"
+            )
     processing = config.processing
     if processing.estimator == "sinusoid" and processing.sinusoid.envelope == "common":
         yield (

@@ -214,6 +214,20 @@ _BESIDE = (
                    of=("action_potential", "calibration")),
         ),
     ),
+    Stage(
+        "design", "octsim.studies.design.study:design",
+        "Search fill, focus, aperture and band for the least error of an expansion",
+        # by scheme fullwave, whatever the run's
+        reads=("scene", "objective", "polarisation", "spectrum", "calibration", "design",
+               "sweep.focus"),
+        after=("focus_law",), beside=True,
+        summary="octsim.studies.design.study:summary",
+        doubts="octsim.studies.design.study:doubts",
+        figures=(
+            Figure("design", "octsim.figures.design:design_figure",
+                   "how well an expansion is known, over fill, focus, aperture and band"),
+        ),
+    ),
 )  # fmt: skip
 
 CATALOG: Mapping[str, Stage] = {row.name: row for row in (*_RUN, *_BESIDE)}

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 
+from octsim.datasets.design_variables import DESIGN
+
 MEANINGS: Mapping[str, tuple[str, str]] = {
     # name: (units, long_name)
     "accuracy_status": ("1", "whether the accuracy that was asked for is reached"),
@@ -33,7 +35,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     ),
     "ideal_phase_slope": ("mrad/nm", "phase slope for a spectrum cos(2ndk)"),
     "imaginary": ("1", "imaginary part of the field, without the phase that was taken out"),
-    "intensity": ("1", "intensity, relative to all launched light in phase"),
+    "intensity": ("1", "intensity; 1 is all light in phase, or of waves a mirror in the focus"),
     "intensity_error": ("1", "estimated error of the intensity, over the largest"),
     "intercept": ("um", "intercept of the focus law"),
     "law_centre": ("um", "focus of greatest intensity that the law is fitted to"),
@@ -270,6 +272,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "coverage_both": ("1", "fraction of round trips within their standard error"),
     "coverage_noise": ("1", "the same of an instrument as believed, by the statistical error"),
     "coverage_instrument": ("1", "the same without noise, by the systematic error"),
+    **DESIGN,
 }
 _STANDARD_ERROR = "_standard_error"
 

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from octsim.config.models import FocusLine
 from octsim.figures.style import BLACK, BLUE, VERMILION, label, title
 from octsim.stages.centres import CentreUse
+from octsim.stages.focus_law import LawScheme
 
 
 def figure_7(fits: xr.Dataset, law: xr.Dataset) -> Figure:
@@ -47,7 +48,7 @@ def figure_7(fits: xr.Dataset, law: xr.Dataset) -> Figure:
     (rests or [foci])[-1].set_xlabel(label(diameter))
     used = int((use == CentreUse.FITTED_THROUGH).sum())
     lack = "" if has_law else f", none: a peak for {used} of {use.size} diameters only"
-    by = f" by scheme {law['law_scheme'].item()}" if own is law else ""
+    by = f" by scheme {LawScheme(int(law['law_scheme'])).name}" if own is law else ""
     foci.set_title(title(law, f"Focus law{by}{lack}"))
     foci.legend()
     return figure

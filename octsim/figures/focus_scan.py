@@ -3,7 +3,7 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from octsim.figures.style import BLUE, ORANGE, label, title
+from octsim.figures.style import BLUE, ORANGE, label, title, unit_of_intensity
 
 
 def figure_6(scan: xr.Dataset) -> Figure:
@@ -16,7 +16,7 @@ def figure_6(scan: xr.Dataset) -> Figure:
     rays.set_yscale("symlog", linthresh=1)
     rays.set_ylabel(label(scan["rays_detected"], "rays detected"))
     light.semilogy(focus, scan["intensity"], color=BLUE)
-    light.set_ylabel(label(scan["intensity"], "mean intensity\n(1 = all light in phase)"))
+    light.set_ylabel(label(scan["intensity"], f"mean intensity\n(1 = {unit_of_intensity(scan)})"))
     light.set_xlabel(label(focus))
     rays.set_title(title(scan, f"Focus scan, diameter {float(scan['diameter']):g} µm"))
     return figure

@@ -17,6 +17,7 @@ from matplotlib.lines import Line2D
 
 from octsim.base.files import whole
 from octsim.phase.fringe_status import doubts_of
+from octsim.schemes.table import SCHEMES, UNIT_OF_INTENSITY
 
 # Okabe and Ito's colours; the order keeps neighbours apart in lightness too.
 BLUE, ORANGE, GREEN, BLACK = "#0072B2", "#E69F00", "#009E73", "#000000"
@@ -59,6 +60,12 @@ def label(variable: xr.DataArray, name: str | None = None) -> str:
     symbol = _SYMBOLS.get(units, units)
     text = text[:1].upper() + text[1:]
     return f"{text} ({symbol})" if symbol else text
+
+
+def unit_of_intensity(dataset: xr.Dataset) -> str:
+    """Return what an intensity of 1 is, by the scheme of a dataset of a plain config."""
+    scheme = json.loads(dataset.attrs["config"])["tracing"]["scheme"]
+    return UNIT_OF_INTENSITY[SCHEMES[scheme].light]
 
 
 def title(dataset: xr.Dataset, text: str) -> str:

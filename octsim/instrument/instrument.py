@@ -25,7 +25,7 @@ class PointSpectrum(NamedTuple):
     """The intensity of one point over the wavenumbers."""
 
     intensity: NDArray[np.float64]
-    """(K,); 1 is all of the launched light in phase."""
+    """(K,); 1 is what `UNIT_OF_INTENSITY` says."""
     error: float
     """Estimate of max |ΔI| / max I."""
     status: AccuracyStatus

@@ -172,3 +172,8 @@ PRESETS: Mapping[str, Mapping[str, Any]] = {
     for name, options in row.presets.items()
 }
 """Points of the trade of cost for accuracy, each a scheme and its options."""
+UNIT_OF_INTENSITY: Mapping[str, str] = {
+    "rays": "all light in phase",
+    "waves": "a mirror in the focus",
+}
+"""What an intensity of 1 is, by the kind of light: they are not the same instrument."""

@@ -1,6 +1,7 @@
 """The focus law: a straight line through the foci of greatest intensity (figure 7)."""
 
 import warnings
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -15,9 +16,12 @@ from octsim.datasets.files import flags
 from octsim.datasets.layout import Layout
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
-from octsim.schemes.table import LIGHT_PATHS
+from octsim.schemes.table import LIGHT_PATHS, SCHEMES
 from octsim.stages.centres import FEWEST, CentreUse, doubts, failures, remedy, use_of
 from octsim.stages.gaussian_fits import FitStatus, fitted, law_diameters
+
+LawScheme = IntEnum("LawScheme", list(SCHEMES), start=0)  # type: ignore[misc]
+"""The scheme whose intensities a law is fitted to."""
 
 
 class Line(NamedTuple):
@@ -103,7 +107,7 @@ def focus_law(
             "status": ("diameter", *flags(FitStatus, part["status"].values)),
             "centre_use": ("diameter", *flags(CentreUse, use)),
             "brightest_focus": ("diameter", part["brightest_focus"].values),
-            "law_scheme": ((), scheme),
+            "law_scheme": ((), *flags(LawScheme, np.array(LawScheme[scheme]))),
         }
         if scheme != at.config.tracing.scheme:
             for name in ("centre", "centre_standard_error"):

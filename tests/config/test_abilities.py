@@ -85,8 +85,8 @@ def test_a_config_of_waves_is_one_of_rays_as_far_as_those_can() -> None:
     assert as_far_as(SCHEMES["fullwave"], config) == config
 
 
-def test_light_depends_on_polarisation_where_a_scheme_has_it() -> None:
+def test_a_spectrum_depends_on_polarisation_where_a_scheme_has_it_and_no_light_does() -> None:
     for name, scheme in SCHEMES.items():
-        keys = light_keys(load_config({"tracing": {"scheme": name}}))
-        assert ("polarisation" in keys) == (Ability.POLARISATION in scheme.honours)
+        assert "polarisation" not in light_keys(load_config({"tracing": {"scheme": name}}))
+        assert ("polarisation" in scheme.summing_keys) == (Ability.POLARISATION in scheme.honours)
     assert {"scene", "objective"} < set(light_keys(Config()))

@@ -98,6 +98,7 @@ BAD: list[tuple[dict[Any, Any], str]] = [
     ({"sweep": {"focus": {"slope": 0, "intercept": "1 mm"}}}, "and sweep.focus asks for one at 1000.0 um"),
     ({"run": "../elsewhere"}, "run: '../elsewhere' given; it should be a plain name as text"),
     ({"run": ".hidden"}, "run: '.hidden' given; it should be a plain name as text"),
+    ({"run": ["a"]}, "run: ['a'] given; it should be a plain name as text"),
     ({"run": ""}, "run: '' given; it should be a plain name as text"),
     ({"run": 20240601}, "put it in quotes in a config file, or write --config 'run=!!str NAME' on the command line"),
     ({"tracing": {"rays": "3000"}}, "it should be a whole number, written out as digits and without quotes, in a config file"),

@@ -96,7 +96,7 @@ def test_an_edit_of_a_stage_touches_that_stage_alone(changed: Callable[..., set[
         # the law reads how the fits ended, and who follows the law reads the law
         for stage in (
             "gaussian_fits", "focus_law", "detections", "spectra", "paths", "causes",
-            "estimators", "calibration", "action_potential", "tradeoff",
+            "estimators", "calibration", "action_potential", "tradeoff", "design",
         )
     }  # fmt: skip
 

@@ -31,12 +31,23 @@ GRIDS: dict[str, Any] = {
     "product": {"scene.gap": ["5 nm", "20 nm", "50 nm"], "tracing.rays": [50, 200]},
     "padded": {"sweep.diameters.num": [3, 9], "focus_law.fraction.num": [4, 6]},
     "schemes": {"tracing": [{"rays": 100}, {"preset": "draft"}]},
+    "waves": {"tracing": [{"rays": 100}, {"preset": "exact"}]},
 }
 STAGES: dict[str, Callable[[octsim.Config, Share], Stream]] = {
     "focus_scan": lambda config, share: octsim.focus_scan.stream(config, share=share),
     "focus_sweep": lambda config, share: octsim.focus_sweep.stream(config, share=share),
     "detections": lambda config, share: octsim.detections.stream(config, share=share),
+    "fields": lambda config, share: octsim.fields.stream(config, share=share),
+    "ray_focus_sweep": lambda config, share: octsim.ray_focus_sweep.stream(config, share=share),
 }
+
+SCATTERED = [
+    (stage, grid)
+    for stage in STAGES
+    for grid in GRIDS
+    if grid == "waves" or stage not in ("fields", "ray_focus_sweep")
+]
+"""Stages, and the grids in which there are any."""
 
 
 def scattered(stage: str, config: octsim.Config, count: int, folder: Path) -> list[Path]:
@@ -48,8 +59,7 @@ def scattered(stage: str, config: octsim.Config, count: int, folder: Path) -> li
     return files
 
 
-@pytest.mark.parametrize("grid", GRIDS)
-@pytest.mark.parametrize("stage", STAGES)
+@pytest.mark.parametrize(("stage", "grid"), SCATTERED)
 def test_gathered_shares_are_the_whole_stage_to_the_bit(
     stage: str, grid: str, tmp_path: Path
 ) -> None:
@@ -111,8 +121,7 @@ def test_what_takes_less_than_asked_for_is_one_job() -> None:
     assert set(shares_of(octsim.load_config({})).values()) == {1}
 
 
-@pytest.mark.parametrize("grid", GRIDS)
-@pytest.mark.parametrize("stage", STAGES)
+@pytest.mark.parametrize(("stage", "grid"), SCATTERED)
 def test_there_are_no_more_shares_than_blocks(stage: str, grid: str) -> None:
     config = octsim.load_config(TINY, {"grid": GRIDS[grid]}, {"scatter": {"minutes": 1e-6}})
     layout = STAGES[stage](config, WHOLE).layout

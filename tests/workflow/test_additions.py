@@ -32,7 +32,7 @@ def tracer(optics, options):
     return light_at
 
 
-def field(light, wavenumber, options):
+def field(light, wavenumber, optics, options):
     return field_of_rays(
         light.amplitude, light.rough_amplitude, light.optical_path_length, wavenumber
     )

@@ -64,9 +64,7 @@ def test_thin_cylinders_scatter_by_their_area() -> None:
     )
 
 
-def interfaces(
-    k: float, along: float, m: int, n_neuron: float
-) -> tuple[NDArray[Any], ...]:
+def interfaces(k: float, along: float, m: int, n_neuron: float) -> tuple[NDArray[Any], ...]:
     """Return what the surface reflects and transmits of waves that go in and out, by scipy."""
     a = 0.6
 
