@@ -45,7 +45,7 @@ def wavenumbers(reach: float, band: float, digits: float) -> float:
     digits : float
         −log₁₀ of the accuracy.
     """
-    return 2.5 + 0.75 * band * reach + 1.35 * digits
+    return 4.5 + 0.75 * band * reach + 1.35 * digits
 
 
 class PointCost(NamedTuple):

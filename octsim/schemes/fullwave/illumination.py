@@ -87,7 +87,8 @@ def illumination(
     r = reflection(
         sideways + 0j, across + 0j, below, above, scene.n_glass, scene.n_water, upwards=True
     )
-    angle = np.arctan2(across, above.real) + 0j
+    odd, even = mirror_waves(0, np.arctan2(across, above.real), waves)
+    classes = (odd, even), (even, odd)
     wavenumber = k[:, np.newaxis, np.newaxis]
     weight = np.stack([pupil.amplitude(sine, aperture, one) for one in k.tolist()])
     # both halves of the integral over k_x
@@ -105,7 +106,7 @@ def illumination(
             # a matrix for each k_y, over all wavenumbers
             sides = (
                 _over_across(part * field, waves_of)
-                for field, waves_of in zip(through, mirror_waves(mirror, angle, waves), strict=True)
+                for field, waves_of in zip(through, classes[mirror], strict=True)
             )
             found.append(Lit(polarisation, mirror, *sides))
     return found
