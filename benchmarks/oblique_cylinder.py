@@ -14,7 +14,8 @@ def wait(
     k: float, ky: float, order: int, radius: float, outside: float, inside: float
 ) -> NDArray[np.complex128]:
     """Return the 2 × 2 matrix from the incident to the outgoing partial wave of an order."""
-    k2, k3 = (np.sqrt((n * k) ** 2 - ky**2) for n in (outside, inside))
+    # imaginary beyond a medium's index, where light decays
+    k2, k3 = (np.emath.sqrt((n * k) ** 2 - ky**2) for n in (outside, inside))
     alpha = 1j * ky * order / radius * (1 / k2**2 - 1 / k3**2)
     within, within_slope = jv(order, k3 * radius), jvp(order, k3 * radius)
 

@@ -17,7 +17,8 @@ from octsim.base.errors import OctsimError, OctsimWarning
 from octsim.base.files import whole
 from octsim.config.load import load_config
 from octsim.config.models import Config
-from octsim.datasets.catalog import CATALOG
+from octsim.datasets.catalog import CATALOG, jobs
+from octsim.datasets.keys import jobs_of
 from octsim.stages.run_id import is_latest
 
 _RSS_UNIT = 2**20 if sys.platform == "darwin" else 2**10  # of what is counted, in a MiB
@@ -99,7 +100,7 @@ def _make(task: Task, folder: Path, config: Config) -> None:
     from octsim.stages.job import Job, perform
     from octsim.stages.scatter import Share
 
-    rows = tuple(row for row in CATALOG.values() if row.rule == task.name)
+    rows = {**jobs_of(config), **jobs(beside=True)}[task.name]
     before = {name: Path(file) for name, file in task.input.items() if name in CATALOG}
     only = next(iter(task.output.values()))
     made = {row.name: Path(task.output.get(row.name, only)) for row in rows}

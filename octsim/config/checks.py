@@ -13,6 +13,7 @@ from octsim.config.models import Config, FocusLine
 from octsim.config.scene_checks import diameters_of, impossible_scene, scene_remarks
 from octsim.config.units import format_length
 from octsim.optics.two_beams import aliasing_step
+from octsim.schemes.cost import MOST_WAVENUMBERS, MOST_WAVES, partial_waves, wavenumbers
 from octsim.schemes.table import COUNTED_RAYS, SCHEMES
 
 # The two below are measured: `snakemake stability` compares the tracer with one of 50 digits, and
@@ -64,6 +65,12 @@ def impossible(config: Config) -> Iterator[str]:
             f"spectrum.wavelength.min: {format_length(band.min)} given; it must be below "
             f"spectrum.wavelength.max = {format_length(band.max)}"
         )
+    for place, tried in enumerate(config.design.bands):
+        if not tried.min < tried.max:
+            yield (
+                f"design.bands.{place}.min: {format_length(tried.min)} given; it must be below "
+                f"design.bands.{place}.max = {format_length(tried.max)}"
+            )
     processing = config.processing
     if processing.estimator == "sinusoid" and processing.sinusoid.envelope == "common":
         yield (
@@ -100,6 +107,15 @@ def _below_objective(config: Config) -> Iterator[str]:
             f"objective.numerical_aperture: {aperture} given; it must be below the index of "
             f"{medium}, scene.refractive_index.{medium} = {index}"
         )
+    host, host_index = scene.host_medium, scene.host_index
+    scheme = SCHEMES[config.tracing.scheme]
+    if scheme.light == "waves" and not aperture < host_index:
+        rays = " or ".join(name for name, other in SCHEMES.items() if other.light == "rays")
+        yield (
+            f"objective.numerical_aperture: {aperture} given, but tracing.scheme: {scheme.name} "
+            f"has no light that decays in {host}; give one below scene.refractive_index.{host} = "
+            f"{host_index}, or tracing.scheme: {rays}"
+        )
 
 
 def require_possible(config: Config) -> None:
@@ -122,6 +138,36 @@ def _steep_remarks(config: Config) -> Iterator[str]:
             f"tracing.scheme: {scheme.name!r} with a numerical aperture of {aperture}, above "
             f"{scheme.steepest} of the index of water, {water}: light near grazing incidence can "
             f"be missed, and the error with it; compare with {COUNTED_RAYS.name!r}"
+        )
+
+
+def _budget_remarks(config: Config) -> Iterator[str]:
+    """Say where scheme fullwave will stop at its budget."""
+    tracing, scene = config.tracing, config.scene
+    if SCHEMES[tracing.scheme].light != "waves":
+        return
+    band = config.spectrum.wavelength
+    k_min, k_max = 2 * math.pi / band.max, 2 * math.pi / band.min
+    digits = -math.log10(tracing.accuracy)
+    diameters = diameters_of(config)
+    key, largest = max(diameters.items(), key=lambda item: item[1])
+    size = k_max * max(scene.swept_index, scene.host_index) * largest / 2
+    reach = scene.swept_index * largest + scene.host_index * scene.swept_gap
+    waves = partial_waves(size, digits)
+    nodes = wavenumbers(reach, k_max - k_min, digits)
+    instead = "so spectra will say budget_spent; give less, or a tracing.scheme of rays"
+    if waves > MOST_WAVES:
+        yield (
+            f"{key}: {format_length(largest)} takes some {waves:.0f} partial waves by "
+            f"tracing.scheme: {tracing.scheme}, which has at most {MOST_WAVES}, {instead}"
+        )
+    elif nodes > MOST_WAVENUMBERS:
+        key, length = max(
+            (("scene.gap", scene.swept_gap), (key, largest)), key=lambda item: item[1]
+        )
+        yield (
+            f"{key}: {format_length(length)} takes some {nodes:.0f} wavenumbers by "
+            f"tracing.scheme: {tracing.scheme}, which has at most {MOST_WAVENUMBERS}, {instead}"
         )
 
 
@@ -155,7 +201,7 @@ def rounding_remarks(config: Config) -> list[str]:
 
 def plain_remarks(config: Config) -> list[str]:
     """Return what is possible but likely not meant, a line each, of a config without a grid."""
-    said = [*_steep_remarks(config), *scene_remarks(config)]
+    said = [*_steep_remarks(config), *_budget_remarks(config), *scene_remarks(config)]
     band, diameters = config.spectrum.wavelength, config.sweep.diameters
     n_neuron = config.scene.swept_index
     k_min, k_max = 2 * math.pi / band.max, 2 * math.pi / band.min

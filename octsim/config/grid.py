@@ -12,8 +12,8 @@ from octsim.config.fields import as_text as as_text
 from octsim.config.models import Config
 
 FIXED = (
-    "run", "calibration", "expansion", "action_potential", "grid", "archive", "cache", "budget",
-    "scatter",
+    "run", "calibration", "expansion", "action_potential", "design", "grid", "archive", "cache",
+    "budget", "scatter",
 )  # fmt: skip
 """Sections that a run has once: what no stage over the grid depends on."""
 _NUMBERS = re.compile(r"[-+]?[0-9][0-9.e+-]*")

@@ -68,7 +68,10 @@ _OF_TWO_KINDS = (
     ["expansion", "drift"],
     ["objective", "pupil"],
 )
-_LISTS = ("processing.window", "scene.layers", "scene.cylinders", "scene.cylinders.shells")
+_LISTS = (
+    "processing.window", "scene.layers", "scene.cylinders", "scene.cylinders.shells",
+    "design.fills", "design.apertures", "design.bands",
+)  # fmt: skip
 
 
 def explain(error: ErrorDetails) -> str:
@@ -79,7 +82,7 @@ def explain(error: ErrorDetails) -> str:
     path = ".".join(place)
     entry = _of_any_entry(path)
     listed = isinstance(error["input"], list | tuple) and error["type"] != "model_type"
-    varies = listed and place[0] != "archive"  # a run has one
+    varies = listed and place[0] not in ("archive", "run")  # a run has one
     key = next((name for name in (place[-1], path) if name in set(known_keys())), None)
     if varies and key and entry not in _LISTS:
         return (

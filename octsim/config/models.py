@@ -11,6 +11,7 @@ from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
 from octsim.config.archive import ArchiveConfig
 from octsim.config.calibration import ActionPotential, Calibration, ExpansionConfig
+from octsim.config.design import Design
 from octsim.config.fields import (
     DiameterRange,
     FocusRange,
@@ -233,6 +234,7 @@ class Config(Section):
     calibration: Calibration = Calibration()
     expansion: ExpansionConfig = ExpansionConfig()
     action_potential: ActionPotential = ActionPotential()
+    design: Design = Design()
     grid: Annotated[Grid, BeforeValidator(lambda given: {} if given is None else given)] = Grid()
     archive: ArchiveConfig = ArchiveConfig()
     cache: Cache = Cache()

@@ -151,11 +151,13 @@ _BESIDE = (
     Stage(
         "tradeoff", "octsim.studies.tradeoff.study:tradeoff",
         "Measure error and cost, one setting after the other",
-        reads=(*_COMPARED, "focus_law"), beside=True,
+        reads=(*_COMPARED, "polarisation", "focus_law"), beside=True,
         summary="octsim.studies.tradeoff.study:summary",
         figures=(
             Figure("tradeoff", "octsim.figures.tradeoff:tradeoff_figure",
                    "error over cost of each setting"),
+            Figure("truth", "octsim.figures.tradeoff:truth_figure",
+                   "error from Maxwell's equations over time"),
         ),
     ),
     Stage(
@@ -222,6 +224,20 @@ _BESIDE = (
             Figure("action_potential", "octsim.figures.action_potential:action_potential_figure",
                    "an action potential that is recovered, with its errors",
                    of=("action_potential", "calibration")),
+        ),
+    ),
+    Stage(
+        "design", "octsim.studies.design.study:design",
+        "Search fill, focus, aperture and band for the least error of an expansion",
+        # by scheme fullwave, whatever the run's
+        reads=("scene", "objective", "polarisation", "spectrum", "calibration", "design",
+               "sweep.focus"),
+        after=("focus_law",), beside=True,
+        summary="octsim.studies.design.study:summary",
+        doubts="octsim.studies.design.study:doubts",
+        figures=(
+            Figure("design", "octsim.figures.design:design_figure",
+                   "how well an expansion is known, over fill, focus, aperture and band"),
         ),
     ),
 )  # fmt: skip

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from octsim.config.models import Config
 from octsim.datasets.catalog import CATALOG, STAGES
-from octsim.datasets.keys import stage_axes
+from octsim.datasets.keys import stage_axes, stages_of
 from octsim.datasets.stage import Figure
 
 SPIRAL = Figure("figure_1", "octsim.figures.beam:figure_1", "spiral on which rays start")
@@ -46,7 +46,12 @@ def run_figures(config: Config) -> dict[str, Drawn]:
     def has(one: Drawn) -> bool:
         return any(stage_axes(source, config) for source in one.sources) == one.figure.over_grid
 
-    return {name: one for name, one in all_run_figures().items() if has(one)}
+    there = stages_of(config)
+    every = {
+        name: Drawn(one.figure, tuple(source for source in one.sources if source in there))
+        for name, one in all_run_figures().items()
+    }
+    return {name: one for name, one in every.items() if has(one)}
 
 
 def figures_of(config: Config) -> dict[str, tuple[str, ...]]:

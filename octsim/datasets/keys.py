@@ -30,7 +30,9 @@ def _read(stage: str, config: Config) -> Iterator[str]:
         if key == LIGHT:
             yield from light_keys(config)
         elif key == RAYS:
-            yield from light_keys(by_light_paths(config))
+            # at a preset, whatever the section tracing asks for
+            every = light_keys(by_light_paths(config))
+            yield from (one for one in every if not one.startswith("tracing."))
         elif key == SUMMING:
             yield from scheme_of(config).summing_keys
         else:
@@ -70,7 +72,11 @@ def stages_of(config: Config) -> tuple[str, ...]:
 def jobs_of(config: Config) -> dict[str, tuple[Stage, ...]]:
     """Return the jobs of a run, and the datasets that each makes."""
     there = stages_of(config)
-    return {name: rows for name, rows in jobs(beside=False).items() if rows[0].name in there}
+    found = {
+        name: tuple(row for row in rows if row.name in there)
+        for name, rows in jobs(beside=False).items()
+    }
+    return {name: rows for name, rows in found.items() if rows}
 
 
 def _exists(stage: str, config: Config) -> bool:

@@ -28,7 +28,8 @@ class Figure:
     caption: str
     """What it shows."""
     of: tuple[str, ...] = ()
-    """Datasets that it is drawn from; without any named, the one whose row it stands in."""
+    """Datasets that it is drawn from, as far as a run has them; without any named, the one whose
+    row it stands in."""
     without: tuple[str, ...] = ()
     """Variables that it does not need, and that may be large."""
     over_grid: bool = False

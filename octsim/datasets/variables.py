@@ -2,6 +2,9 @@
 
 from collections.abc import Mapping
 
+from octsim.datasets.design_variables import DESIGN
+from octsim.datasets.validity_variables import VALIDITY
+
 MEANINGS: Mapping[str, tuple[str, str]] = {
     # name: (units, long_name)
     "accuracy_status": ("1", "whether the accuracy that was asked for is reached"),
@@ -124,6 +127,13 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "law_slope_error": ("1", "error of the focus law's slope"),
     "law_intercept_error": ("um", "error of the focus law's intercept"),
     "focus_error": ("um", "largest error of the focus by the law, over the sweep"),
+    "maxwell_spectrum_worst_error": ("1", "error of the spectrum's shape from Maxwell's, largest"),
+    "maxwell_spectrum_median_error": ("1", "error of the spectrum's shape from Maxwell's, median"),
+    "maxwell_slope_rms_error": ("mrad/nm", "error of the phase slope from Maxwell's, rms"),
+    "maxwell_slope_largest_error": ("mrad/nm", "largest error of the phase slope from Maxwell's"),
+    "maxwell_slope_bias": ("mrad/nm", "mean of the phase slope less that of Maxwell's"),
+    "maxwell_frontier": ("1", "whether none has as true a spectrum in as little time"),
+    "maxwell_slope_frontier": ("1", "whether none has as true a slope in as little time"),
     "segments_per_diameter": ("1", "mean number of straight pieces of ray traced a diameter"),
     "cpu_seconds": ("s", "processor time to trace and sum the sweep"),
     "peak_memory": ("MiB", "growth of the process's largest resident set"),
@@ -272,20 +282,8 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "coverage_both": ("1", "fraction of round trips within their standard error"),
     "coverage_noise": ("1", "the same of an instrument as believed, by the statistical error"),
     "coverage_instrument": ("1", "the same without noise, by the systematic error"),
-    # rays beside Maxwell's equations
-    "case": ("1", "instrument that is compared"),
-    "quantity": ("1", "what is varied of it"),
-    "quantity_value": ("1", "what that is"),
-    "ray_scheme": ("1", "scheme of rays"),
-    "focus_mode": ("1", "whether the focus follows the diameter, or is held"),
-    "bound_of_error": ("1", "bound of the relative error of the phase slope"),
-    "ray_phase_slope": ("mrad/nm", "phase slope by rays"),
-    "ray_slope_error": ("1", "relative error of the phase slope by rays"),
-    "ray_phase_error": ("rad", "error of the phase by rays, at the middle of the band"),
-    "ray_visibility_error": ("1", "relative error of the fringe's visibility by rays"),
-    "ray_spectrum_error": ("1", "error of the spectrum over its mean by rays, rms over the band"),
-    "mean_slope_error": ("1", "mean error of the phase slope by rays, over the mean slope"),
-    "share_within": ("1", "share of the diameters where that error is within the bound"),
+    **DESIGN,
+    **VALIDITY,
 }
 _STANDARD_ERROR = "_standard_error"
 

@@ -2,10 +2,12 @@
 
 import warnings
 from collections.abc import Callable
+from operator import attrgetter
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from octsim.base.errors import ConfigError, DatasetError, OctsimWarning
 from octsim.config.models import Config
@@ -17,6 +19,7 @@ from octsim.phase.estimators.estimate import Array, Estimate, Phases
 from octsim.phase.estimators.likelihood import maximum_likelihood
 from octsim.phase.estimators.visible import unusable
 from octsim.phase.fringe_status import FringeStatus, doubts_of
+from octsim.phase.lone_samples import lone
 from octsim.phase.measured_spectra import Raw, even, read_raw
 
 BEST = Processing.model_validate(
@@ -110,6 +113,7 @@ def phase_of(
     -----
     OctsimWarning
         If the status of a spectrum is other than visible: a line for each status, with its remedy.
+        If samples stand alone (`octsim.phase.lone_samples.lone`).
 
     Raises
     ------
@@ -147,9 +151,27 @@ def phase_of(
     cut = are_cut(np.asarray(raw.intensity, float))  # before they were interpolated
     nominal = np.full(intensity.shape[0], np.nan if nominal_depth is None else nominal_depth)
     found = estimate(intensity, k, nominal, processing, cut)
-    for doubt in doubts_of(found.status, "spectra"):
+    for doubt in (
+        *doubts_of(found.status, "spectra", attrgetter("measured_remedy")),
+        *_lone(raw, cut),
+    ):
         warnings.warn(f"phase_of: {doubt}", OctsimWarning, stacklevel=2)
     return found
+
+
+def _lone(raw: Raw, cut: NDArray[np.bool_]) -> list[str]:
+    """Say in a line which samples stand alone, of spectra (D,) that are not cut."""
+    intensity = np.asarray(raw.intensity, float)
+    marked = np.array([lone(one) for one in intensity]) & ~cut[:, np.newaxis]
+    if not marked.any():
+        return []
+    spectrum, sample = np.argwhere(marked)[0]
+    wavelength = 2e3 * np.pi / raw.wavenumber[sample]
+    return [
+        f"{marked.sum()} samples stand alone, the first {intensity[spectrum, sample]:.4g} in "
+        f"spectrum {spectrum} at {wavelength:.6g} nm, and move the phase; mend them, or leave that "
+        "wavelength out"
+    ]
 
 
 def require_sensible(raw: Raw) -> None:

@@ -1,7 +1,8 @@
 """Whether a spectrum has a fringe that a phase can be read from, by name and with a remedy."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from enum import IntEnum
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -45,15 +46,20 @@ class FringeStatus(IntEnum):
 
     @property
     def remedy(self) -> str:
-        """What a user can do about it; empty where nothing is amiss."""
+        """What a user can do about it in a config; empty where nothing is amiss."""
         return _REMEDIES[self]
+
+    @property
+    def measured_remedy(self) -> str:
+        """What a user can do about it who has measured; empty where nothing is amiss."""
+        return _MEASURED[self]
 
 
 _ALONE = (
     "give a smaller gap or detector.core_diameter, or bring the focus between the neuron's sides, "
-    "so that the fringe of the diameter is by far the strongest; divide measured spectra by the "
-    "source's own"
+    "so that the fringe of the diameter is by far the strongest"
 )
+_NOT_ALONE = "else its phase and slope are not of the diameter alone"
 _REMEDIES: Mapping[FringeStatus, str] = {
     FringeStatus.VISIBLE: "",
     FringeStatus.NO_SPECTRUM: "give focus_law.fraction a wider range or more steps",
@@ -64,20 +70,38 @@ _REMEDIES: Mapping[FringeStatus, str] = {
     FringeStatus.TOO_FEW_OSCILLATIONS: "widen spectrum.wavelength, or take larger diameters",
     FringeStatus.NOT_RESOLVED: "raise spectrum.samples, or narrow spectrum.wavelength",
     FringeStatus.NO_FRINGE: (
-        "give the neuron an index other than that of water, and bring the focus between its sides; "
-        "of measured spectra, divide by the source's own and name the depth"
+        "give the neuron an index other than that of water, and bring the focus between its sides"
     ),
     FringeStatus.WITHIN_ERROR: "ask for more by tracing.accuracy",
     FringeStatus.OTHER_DEPTHS: _ALONE,
     FringeStatus.SATURATED: "expose for less, so that no sample is cut, and measure again",
-    FringeStatus.FAR_FROM_NOMINAL: (
-        "check the diameter, the index and the wavenumbers, and divide measured spectra by the "
-        "source's own"
-    ),
-    FringeStatus.MIXED: f"{_ALONE}; else its phase and slope are not of the diameter alone",
+    FringeStatus.FAR_FROM_NOMINAL: "check the diameter, the index and the wavenumbers",
+    FringeStatus.MIXED: f"{_ALONE}; {_NOT_ALONE}",
     FringeStatus.POOR_FIT: (
-        "divide the spectra by the source's own, or raise the degrees of processing.sinusoid; else "
-        "phases and their changes can be wrong by far more than their standard error"
+        "raise the degrees of processing.sinusoid; else phases and their changes can be wrong by "
+        "far more than their standard error"
+    ),
+}
+_DIVIDE = "divide the spectra by the source's own"
+_MEASURED: Mapping[FringeStatus, str] = {
+    **_REMEDIES,
+    FringeStatus.NO_SPECTRUM: "leave the spectrum out",
+    FringeStatus.NO_LIGHT: "leave the spectrum out, or look whether the camera recorded it",
+    FringeStatus.TOO_FEW_OSCILLATIONS: "measure over a wider band, or check the depth",
+    FringeStatus.NOT_RESOLVED: "give more samples, or a narrower band, or check the depth",
+    FringeStatus.NO_FRINGE: f"{_DIVIDE}, name the depth, or take more light or a longer mean",
+    FringeStatus.WITHIN_ERROR: "take more light or a longer mean",
+    FringeStatus.OTHER_DEPTHS: f"{_DIVIDE}, name the depth, or subtract what is there without it",
+    FringeStatus.FAR_FROM_NOMINAL: (
+        f"check the depth that is named and the wavelengths, and {_DIVIDE}"
+    ),
+    FringeStatus.MIXED: (
+        f"{_DIVIDE}, look for samples that are none, and subtract fringes of other surfaces; "
+        f"{_NOT_ALONE}"
+    ),
+    FringeStatus.POOR_FIT: (
+        f"{_DIVIDE}, or raise the degrees of Processing.sinusoid; else phases and their changes "
+        "can be wrong by far more than their standard error"
     ),
 }
 
@@ -86,11 +110,15 @@ WITH_PHASE = [status for status in FringeStatus if status.has_phase]
 """Those of spectra whose phase can be read."""
 
 
-def doubts_of(status: "NDArray[np.int8]", what: str) -> list[str]:
+def doubts_of(
+    status: "NDArray[np.int8]",
+    what: str,
+    remedy: Callable[[FringeStatus], str] = attrgetter("remedy"),
+) -> list[str]:
     """Say, a line each, how many of some things have a status that is amiss, with its remedy."""
     return [
         f"{one.name.lower()} at {(status == one).sum()} of {status.size} {what}"
-        f"{'' if one.has_phase else ', whose phase is not known (NaN)'}: {one.remedy}"
+        f"{'' if one.has_phase else ', whose phase is not known (NaN)'}: {remedy(one)}"
         for one in FringeStatus
         if one.remedy and (status == one).any()
     ]

@@ -43,7 +43,8 @@ _NAMES = {
 _BRACKETS = re.compile(r"[(\[{]\s*(.*?)\s*[)\]}]")
 _ERROR = re.compile(
     r"(?:\b|(?<=phase)|(?<=phi)|(?<=φ))(?:errs?|errors?|std|stderr|stdev|stddev|sd|se|"
-    r"sem|sigma|σ|unc|uncertainty|uncertainties|deviation|dev|rms|variance|var|noise)(?:\b|(?=phase|phi|φ))"
+    r"sem|sigma|σ|unc|uncert|precision|jitter|ci ?\d\d|"
+    r"uncertainty|uncertainties|deviation|dev|rms|variance|var|noise)(?:\b|(?=phase|phi|φ))"
 )
 _PHASE = re.compile(r"phase|phi|φ|\bm?rad\b|deg|°")
 _ALIKE = 0.8
@@ -140,10 +141,11 @@ def problem(
     others = [text for text, one in zip(headings, parsed, strict=True) if one is None]
     for name in optional:
         meant = [text for text in others if _may_be(text, name)]
+        units = [one.unit for one in read if one.unit and _fits(name, one.unit)]
         if name not in counts and meant:
             return (
                 f"the heading {meant[0]!r} is not known; write "
-                f"'{name} ({QUANTITIES[name].units[0]})' if it is that, else another name"
+                f"{_proposed(name, meant[0], units)} if it is that, else another name"
             )
     return None
 
@@ -159,10 +161,10 @@ def unknown_unit(heading: Heading) -> str:
 
 
 def _missing(name: str, headings: Sequence[str], form: str) -> str:
-    proposed = f"'{name} ({QUANTITIES[name].units[0]})'"
     if not headings:
-        return f"it holds no '{name}'; write a heading {proposed}"
+        return f"it holds no '{name}'; write a heading {_proposed(name)}"
     meant = [text for text in headings if parse(text) is None and _may_be(text, name)]
+    proposed = _proposed(name, *meant[:1])
     instead = f" in place of {meant[0]!r}" if meant else ""
     return (
         f"it holds no '{name}' under the headings {listed(headings)}; write {proposed}{instead}, "
@@ -170,10 +172,27 @@ def _missing(name: str, headings: Sequence[str], form: str) -> str:
     )
 
 
+def _proposed(name: str, meant: str = "", others: Sequence[str] = ()) -> str:
+    """Return how to write a heading: in the unit of the one that is meant, else of others."""
+    written = re.search(r"[(\[{/]\s*([^)\]}]*)", meant) or re.search(r"[_\s](\S+)$", meant)
+    unit = written[1].strip() if written else ""
+    known = [unit] if _fits(name, unit) else [*others, *QUANTITIES[name].units]
+    return f"'{name} ({known[0]})'"
+
+
 _SHORT = {
     "time": ("t", "zeit"),
     "phase": ("phi", "φ", "ph"),
-    "phase_error": ("phaseerr", "dphase", "dphi", "dφ", "δφ", "σφ"),
+    "phase_error": (
+        "phaseerr",
+        "dphase",
+        "dphi",
+        "dφ",
+        "δφ",
+        "σφ",
+        "δphase",
+        "delta phase",
+    ),
 }
 
 
@@ -193,7 +212,7 @@ def _may_be(text: str, name: str) -> bool:
     if plain in _SHORT[name] or difflib.SequenceMatcher(None, *letters).ratio() > _ALIKE:
         return True
     if name != "phase_error":
-        return plain.startswith(name) and not of_errors(text)
+        return (plain.startswith(name) or name in plain.split()) and not of_errors(text)
     alone = not _ERROR.sub("", plain).replace("standard", "").strip()
     return of_errors(text) and (alone or _PHASE.search(text.casefold()) is not None)
 

@@ -12,13 +12,16 @@ _CODES = (
 """What instruments and other programs write, with either sign, for no value."""
 _APART = 10.0
 """How many times farther from zero than all else such a code stands out."""
+_GAP, _FEWEST = 2.0, 8
+"""Or, beside at least so many others, how many of their spreads it is from the nearest of them."""
 
 
 def stand_ins(values: Array) -> NDArray[np.bool_]:
     """Mark the numbers of columns that stand for none.
 
-    These are numbers beyond `BEYOND`, and a usual code for no value, such as -999, where it is
-    ten times farther from zero than everything else in its column.
+    These are numbers beyond `BEYOND`, and a usual code for no value, such as -999, where it stands
+    out of its column: ten times farther from zero than everything else, two of the others' spreads
+    or more from the nearest, or alone negative.
 
     Parameters
     ----------
@@ -29,15 +32,25 @@ def stand_ins(values: Array) -> NDArray[np.bool_]:
     -------
     ndarray of bool, shape (..., N)
     """
-    finite = np.isfinite(values)
-    size = np.where(finite, np.abs(values), 0.0)
-    beyond = size >= BEYOND
-    size[beyond] = 0.0
-    largest = size.max(axis=-1, keepdims=True, initial=0.0)
-    others = finite & ~beyond & (size < largest)
-    most = np.where(others, size, 0.0).max(axis=-1, keepdims=True, initial=0.0)
-    coded = (
-        np.isin(largest, _CODES) & others.any(axis=-1, keepdims=True) & (_APART * most < largest)
-    )
-    marked: NDArray[np.bool_] = beyond | (coded & (size == largest))
+    finite = np.isfinite(values) & (np.abs(values) < BEYOND)
+    marked: NDArray[np.bool_] = np.isfinite(values) & ~finite
+    for code in _CODES:
+        for value in (code, -code):
+            here = values == value
+            if here.any():
+                marked |= here & _apart(values, value, finite & ~here)
     return marked
+
+
+def _apart(values: Array, code: float, others: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Mark the columns out of whose other values a code stands, (..., 1)."""
+    count = others.sum(axis=-1, keepdims=True)
+    least = np.where(others, values, np.inf).min(axis=-1, keepdims=True, initial=np.inf)
+    most = np.where(others, values, -np.inf).max(axis=-1, keepdims=True, initial=-np.inf)
+    with np.errstate(invalid="ignore"):  # of columns without others, which count none
+        farther = abs(code) > _APART * np.maximum(np.abs(least), np.abs(most))
+        gap = np.maximum(least - code, code - most)
+        distant = gap > _GAP * (most - least)
+    alone = (code < 0) & (least >= 0)
+    out: NDArray[np.bool_] = (count > 0) & farther | (count >= _FEWEST) & (distant | alone)
+    return out

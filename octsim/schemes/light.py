@@ -19,7 +19,8 @@ class AccuracyStatus(IntEnum):
     REACHED = 0
     """By the estimate of the error."""
     BUDGET_SPENT = 1
-    """Stopped at the most segments that are traced for one point."""
+    """Stopped at the most segments that are traced for one point, or at the most partial waves,
+    nodes or wavenumbers that are solved for; NaN where it had to stop before it began."""
     NOT_REACHED = 2
     """The estimate of the error stays above what was asked for."""
     NOT_CONTROLLED = 3

@@ -135,12 +135,18 @@ def remedy(config: Config, law: xr.Dataset) -> str:
     failed = law["centre_use"].values != CentreUse.FITTED_THROUGH
     if (law["status"].values[failed] == FitStatus.NO_LIGHT).all():
         rays = " or tracing.rays" if scheme_of(config).counts_rays else ""
-        return f"nothing is detected there; raise detector.core_diameter{rays}"
+        return (
+            "nothing is detected there; give media whose indices differ, or raise "
+            f"detector.core_diameter{rays}"
+        )
     tried = config.focus_law.fraction
     brightest = (law["brightest_focus"] / law["diameter"]).values[failed]
     middle, reach = (tried.start + tried.stop) / 2, tried.stop - tried.start
     if np.isnan(brightest).all():
-        return "the intensity is the same at all foci, so no focus is better than another"
+        return (
+            "the intensity is the same at all foci, so no focus is better than another; bring "
+            "focus_law.fraction to the neuron (0 to 1), change detector.core_diameter"
+        )
     by = max(_FARTHER, _WIDER * reach)
     start = tried.start - by * bool((brightest < middle).any())
     stop = tried.stop + by * bool((brightest >= middle).any())

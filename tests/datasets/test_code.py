@@ -99,7 +99,7 @@ def test_an_edit_of_a_stage_touches_that_stage_alone(changed: Callable[..., set[
         # the law reads how the fits ended, and who follows the law reads the law
         for stage in (
             "gaussian_fits", "focus_law", "detections", "spectra", "paths", "causes",
-            "estimators", "calibration", "action_potential", "tradeoff", "validity",
+            "estimators", "calibration", "action_potential", "tradeoff", "design", "validity",
         )
     }  # fmt: skip
 

@@ -80,7 +80,7 @@ def test_scheme_fullwave_scatters_as_treams_does_with_the_signs_of_its_cross_ter
 ) -> None:
     scene = CylinderOnPlane(1.52, OUTSIDE, case.inside, 0.005, 2 * case.radius)
     along, k = np.array([case.ky / case.k]), np.array([case.k])
-    whole = scattering(scene, along, k, case.order + 20).whole[0, 0, case.order]
+    whole = scattering(scene, along, k, case.order + 20).whole[..., 0, 0, case.order]
     np.testing.assert_allclose(whole, matrix, rtol=0, atol=1e-12)
 
 

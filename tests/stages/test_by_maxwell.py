@@ -96,7 +96,7 @@ def test_a_run_by_maxwell_is_not_compared_with_itself() -> None:
     ("overlay", "status", "said"),
     [
         ({"objective": {"numerical_aperture": 1.4}}, ExactStatus.BEYOND_SCHEME,
-         "objective.numerical_aperture: 1.4 given, at or above the index of water, 1.33"),
+         "objective.numerical_aperture: 1.4 given, but tracing.scheme: fullwave"),
         ({"sweep": {"diameters": {"stop": "60 um"}}}, ExactStatus.TOO_LONG, "snakemake validity"),
         ({"sweep": {"diameters": {"num": 2}}}, ExactStatus.COMPARED, "three diameters or more"),
     ],

@@ -109,10 +109,12 @@ def test_scatter_stays_in_the_unweighted_law(off: NDArray[np.float64]) -> None:
 
 def test_without_a_law_the_line_says_what_gives_one() -> None:
     config, law = law_of(np.zeros(41), np.zeros(41), np.zeros(41))
-    with pytest.raises(OctsimError, match="nothing is detected there; raise detector"):
+    with pytest.raises(
+        OctsimError, match="there; give media whose indices differ, or raise detector"
+    ):
         sweep_foci(config, law)
     config, law = law_of(np.ones(41), np.ones(41), np.ones(41))
-    with pytest.raises(OctsimError, match="the intensity is the same at all foci"):
+    with pytest.raises(OctsimError, match=r"the same at all foci.*; bring focus_law\.fraction to"):
         sweep_foci(config, law)
 
 

@@ -92,6 +92,15 @@ OTHERS: dict[str, Any] = {
         "drift": "linear",
     },
     "action_potential": {"diameter": "1.5 um", "expansion": "2 nm", "photons": 1e9, "seed": 2},
+    "design": {
+        "photons": 1e5,
+        "expansion": "2 nm",
+        "diameters": {"num": 2},
+        "fills": [0.4],
+        "focus_offsets": {"num": 3},
+        "apertures": [],
+        "bands": [],
+    },
     "archive": {
         "title": "Ours",
         "description": "Of ours.",

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import y0, y1
+from scipy.special import hankel1, hankel2, jv, y0, y1
 
 Array = NDArray[Any]
 
@@ -14,6 +14,35 @@ class Cylindrical(NamedTuple):
 
     value: Array
     slope: Array
+
+
+class Kinds(NamedTuple):
+    """The cylinder functions of one argument."""
+
+    regular: Cylindrical
+    """J."""
+    outgoing: Cylindrical
+    """The Hankel function of the first kind, J + iY."""
+    incoming: Cylindrical
+    """That of the second kind."""
+
+
+def kinds(x: Array, order: int) -> Kinds:
+    """Return all cylinder functions of orders 0 to M.
+
+    Parameters
+    ----------
+    x : ndarray, shape (...)
+        Arguments: all positive, or some of them imaginary, of waves that decay.
+    order : int
+        M.
+    """
+    if np.isrealobj(x):
+        outgoing = hankel(x, order)
+        regular = Cylindrical(outgoing.value.real, outgoing.slope.real)
+        return Kinds(regular, outgoing, second_hankel(outgoing))
+    every = np.arange(order + 2)
+    return Kinds(*(_with_slope(f(every, x[..., np.newaxis]), x) for f in (jv, hankel1, hankel2)))
 
 
 def bessel_j(x: NDArray[np.float64], order: int) -> Cylindrical:
@@ -67,7 +96,7 @@ def second_hankel(of: Cylindrical) -> Cylindrical:
     return Cylindrical(of.value.conj(), of.slope.conj())
 
 
-def _with_slope(values: NDArray[np.float64], x: NDArray[np.float64]) -> Cylindrical:
+def _with_slope(values: Array, x: Array) -> Cylindrical:
     """Return functions of orders 0 … M from those up to M + 1: Z′_m = (m / x) Z_m − Z_{m+1}."""
     value = values[..., :-1]
     orders = np.arange(value.shape[-1])

@@ -15,14 +15,22 @@ built: the sum over m' is taken at the contour's nodes, reflected, and integrate
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
+from octsim.schemes.fullwave.gauss_legendre import gauss_legendre
 from octsim.schemes.fullwave.plane import reflection
 
 Array = NDArray[Any]
 _STEEPEST = 1 - 0.6 / np.pi
 """Of a right angle: how far the contour keeps from the branch points above it."""
+
+_LARGEST = 600.0
+"""Exponent of e^{imβ} on the contour."""
+_FALL = 34.0
+"""How far below its largest the integrand's exponent is where the contour ends."""
+_FAR = np.geomspace(1e-3, 30, 400)
+"""Ends τ to choose from."""
 
 
 class Contour(NamedTuple):
@@ -34,33 +42,37 @@ class Contour(NamedTuple):
     """dβ of each."""
 
 
-def contour(nodes: int, waves: int, least_height: float) -> Contour:
+def contour(nodes: int, waves: ArrayLike, height: ArrayLike) -> Contour:
     """Return the half contour β = c gd(2τ) − iτ, Gauss–Legendre in Re β + τ.
 
     Parameters
     ----------
     nodes : int
         B.
-    waves : int
-        Largest order M.
-    least_height : float
-        Smallest κ₂h of all: the larger M is against it, the farther the contour reaches.
+    waves, height : array_like
+        Largest order M, and κ₂h, of each integral that it is for: the larger M is against κ₂h, the
+        farther it reaches.
     """
-    farthest = np.arccosh(max(1.0, waves / least_height)) + 1.5
+    orders, heights = (np.atleast_1d(one)[:, np.newaxis] for one in (waves, height))
+    exponent = 2 * orders * _FAR - 2 * heights * np.sin(_real(_FAR)) * np.sinh(_FAR)
+    largest = np.maximum(exponent.max(axis=1, keepdims=True), 0.0)
+    counts = (exponent > largest - _FALL).any(axis=0)
+    farthest = min(_FAR[np.append(0, np.flatnonzero(counts) + 1)[-1]], _LARGEST / orders.max())
     scale = _STEEPEST
-
-    def real(tau: NDArray[np.float64]) -> NDArray[np.float64]:
-        return scale * 2 * np.arctan(np.tanh(tau))  # gd(2τ)
-
-    end = float(real(np.array(farthest)) + farthest)
-    x, w = np.polynomial.legendre.leggauss(nodes)
+    end = float(_real(np.array(farthest)) + farthest)
+    x, w = gauss_legendre(nodes)
     reach = end * (x + 1) / 2
     tau = reach / (1 + 2 * scale)
     for _ in range(60):
         slope = 1 + 2 * scale / np.cosh(2 * tau)
-        tau = tau - (real(tau) + tau - reach) / slope
+        tau = tau - (_real(tau) + tau - reach) / slope
     turn = 2 * scale / np.cosh(2 * tau)
-    return Contour(real(tau) - 1j * tau, end / 2 * w * (turn - 1j) / (turn + 1))
+    return Contour(_real(tau) - 1j * tau, end / 2 * w * (turn - 1j) / (turn + 1))
+
+
+def _real(tau: NDArray[np.float64]) -> NDArray[np.float64]:
+    found: NDArray[np.float64] = _STEEPEST * 2 * np.arctan(np.tanh(tau))  # c gd(2τ)
+    return found
 
 
 class Coupling(NamedTuple):

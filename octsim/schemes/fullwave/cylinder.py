@@ -8,14 +8,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.schemes.fullwave.bessel import Cylindrical, bessel_j, hankel, second_hankel
+from octsim.schemes.fullwave.bessel import Cylindrical, Kinds, kinds
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
+from octsim.schemes.fullwave.orders import waves_along
 
 Array = NDArray[Any]
 
 
 class Scattering(NamedTuple):
-    """Matrices (..., M + 1, 2, 2) from regular to outgoing waves."""
+    """Matrices (2, 2, K, Y, M + 1) from regular to outgoing waves."""
 
     whole: Array
     """T."""
@@ -30,8 +31,8 @@ class _Side(NamedTuple):
     """What the boundary condition needs of one medium."""
 
     n: float
-    kappa: NDArray[np.float64]
-    """Over k."""
+    kappa: Array
+    """Over k; imaginary where light decays."""
     skew: Array
     """α: i k_y m / (a κ²), over k."""
 
@@ -39,7 +40,7 @@ class _Side(NamedTuple):
 def scattering(
     scene: CylinderOnPlane, along: NDArray[np.float64], k: NDArray[np.float64], waves: int
 ) -> Scattering:
-    r"""Return the matrices for components k_y / k (Y,) at wavenumbers (K,): (K, Y, M + 1, 2, 2).
+    r"""Return the matrices for components k_y / k (Y,) at wavenumbers (K,): (2, 2, K, Y, M + 1).
 
     .. math::
 
@@ -54,76 +55,90 @@ def scattering(
         _side(index, along, k, waves, scene.radius) for index in (scene.n_water, scene.n_neuron)
     )
     size = scene.radius * k[:, np.newaxis]
-    j2, h2 = (f(size * outside.kappa, waves) for f in (bessel_j, hankel))
-    h3 = hankel(size * inside.kappa, waves)
-    j3 = Cylindrical(h3.value.real, h3.slope.real)
-    core = _scaled(j3)
-    whole = -_solved(_boundary(h2, outside, core, inside), _boundary(j2, outside, core, inside))
-    return Scattering(whole, *_debye(outside, inside, h2, h3))
+    in_water, within = (kinds(size * side.kappa, waves) for side in (outside, inside))
+    core = _scaled(within.regular)
+    at_boundary = (
+        _boundary(one, outside, core, inside) for one in (in_water.outgoing, in_water.regular)
+    )
+    whole = -_solved(*at_boundary)
+    # those beyond scatter nothing but rounding, by which the coupling, which grows with the order,
+    # would be overwhelmed
+    kept = np.arange(waves + 1) <= waves_along(scene, along, k, waves)[..., np.newaxis]
+    debye = _debye(outside, inside, in_water, within)
+    return Scattering(*(one * kept for one in (whole, *debye)))
 
 
 def _side(
     index: float, along: NDArray[np.float64], k: NDArray[np.float64], waves: int, radius: float
 ) -> _Side:
-    kappa = np.sqrt(index**2 - along**2)
+    # beyond the medium's index light decays in it
+    kappa = np.emath.sqrt(index**2 - along**2)
     m = np.arange(waves + 1)
     skew = 1j * along[:, np.newaxis] * m / (radius * k[:, np.newaxis, np.newaxis])
     return _Side(index, kappa, skew / (kappa**2)[:, np.newaxis])
 
 
 def _scaled(one: Cylindrical) -> Cylindrical:
-    """Return a function divided by its size: the boundary condition is homogeneous in it."""
-    size = np.hypot(np.abs(one.value), np.abs(one.slope))
-    return Cylindrical(one.value / size, one.slope / size)
+    """Return a function over its size, as the boundary condition is homogeneous in it.
 
-
-def _tangential(one: Cylindrical, side: _Side) -> Array:
-    r"""Return the matrix from :math:`(E_y, H_y)` to what is continuous beside them."""
-    kappa = side.kappa[:, np.newaxis]
-    skew, turn = side.skew * one.value, one.slope / kappa
-    return _matrix(skew, turn, -(side.n**2) * turn, skew)
+    By a power of two, so that nothing is rounded: no contrast scatters exactly nothing.
+    """
+    _, exponent = np.frexp(np.hypot(np.abs(one.value), np.abs(one.slope)))
+    scale = np.ldexp(1.0, -exponent)
+    return Cylindrical(one.value * scale, one.slope * scale)
 
 
 def _boundary(outer: Cylindrical, outside: _Side, core: Cylindrical, inside: _Side) -> Array:
     """Return N."""
-    j3, z = (one.value[..., np.newaxis, np.newaxis] for one in (core, outer))
-    found: Array = j3 * _tangential(outer, outside) - z * _tangential(core, inside)
-    return found
-
-
-def _debye(outside: _Side, inside: _Side, h2: Cylindrical, h3: Cylindrical) -> tuple[Array, Array]:
-    """Return the terms p = 0, with diffraction, and p = 2.
-
-    With what goes out (H⁽¹⁾) and in (H⁽²⁾, its conjugate) on both sides of the surface: reflection
-    from outside and from inside, and transmission, which is one more.
-    (Hovenac & Lock, JOSA A 9, 781 (1992); Lock, JOSA A 14, 640 (1997).)
-    """
-    out_2, in_2 = _admittance(h2, outside), _admittance(second_hankel(h2), outside)
-    out_3, in_3 = _admittance(h3, inside), _admittance(second_hankel(h3), inside)
-    from_outside = _solved(in_3 - out_2, in_2 - in_3)
-    from_inside = _solved(out_2 - in_3, out_3 - out_2)
-    one = np.eye(2)
-    into, out = one + from_outside, one + from_inside
-    turn_2, turn_3 = ((h.value / np.conj(h.value))[..., np.newaxis, np.newaxis] for h in (h2, h3))
-    near = (from_outside / turn_2 - one) / 2
-    far = out @ from_inside @ into * turn_3**2 / turn_2 / 2
-    return near, far
+    skew = (outside.skew - inside.skew) * (outer.value * core.value)
+    there = outer.slope * core.value * (1 / outside.kappa)[:, np.newaxis]
+    here = core.slope * outer.value * (1 / inside.kappa)[:, np.newaxis]
+    return _matrix(skew, there - here, inside.n**2 * here - outside.n**2 * there, skew)
 
 
 def _admittance(one: Cylindrical, side: _Side) -> Array:
-    # relative to the function's own value, which never is 0
-    return _tangential(Cylindrical(np.ones_like(one.value), one.slope / one.value), side)
+    r"""Return the matrix from :math:`(E_y, H_y)` to what is continuous beside them.
+
+    Relative to the function's own value, which never is 0.
+    """
+    turn = one.slope / one.value * (1 / side.kappa)[:, np.newaxis]
+    return _matrix(side.skew, turn, -(side.n**2) * turn, side.skew)
+
+
+def _debye(outside: _Side, inside: _Side, in_water: Kinds, within: Kinds) -> tuple[Array, Array]:
+    """Return the terms p = 0, with diffraction, and p = 2.
+
+    With what goes out (H⁽¹⁾) and in (H⁽²⁾) on both sides of the surface: reflection
+    from outside and from inside, and transmission, which is one more.
+    (Hovenac & Lock, JOSA A 9, 781 (1992); Lock, JOSA A 14, 640 (1997).)
+    """
+    out_2, in_2 = (_admittance(one, outside) for one in in_water[1:])
+    out_3, in_3 = (_admittance(one, inside) for one in within[1:])
+    from_outside = _solved(in_3 - out_2, in_2 - in_3)
+    from_inside = _solved(out_2 - in_3, out_3 - out_2)
+    one = np.eye(2).reshape(2, 2, 1, 1, 1)
+    into, out = one + from_outside, one + from_inside
+    turn_2, turn_3 = (one.outgoing.value / one.incoming.value for one in (in_water, within))
+    near = (from_outside / turn_2 - one) / 2
+    far = _times(out, _times(from_inside, into)) * (turn_3**2 / turn_2 / 2)
+    return near, far
 
 
 def _matrix(a: Array, b: Array, c: Array, d: Array) -> Array:
-    found = np.empty((*a.shape, 2, 2), np.complex128)
-    found[..., 0, 0], found[..., 0, 1], found[..., 1, 0], found[..., 1, 1] = a, b, c, d
+    found = np.empty((2, 2, *a.shape), np.complex128)
+    found[0, 0], found[0, 1], found[1, 0], found[1, 1] = a, b, c, d
     return found
+
+
+def _times(left: Array, right: Array) -> Array:
+    """Return the product of 2 × 2 matrices, their first two axes."""
+    (a, b), (c, d) = left
+    (e, f), (g, h) = right
+    return _matrix(a * e + b * g, a * f + b * h, c * e + d * g, c * f + d * h)
 
 
 def _solved(matrix: Array, right: Array) -> Array:
     """Return matrix⁻¹ right, of 2 × 2 matrices."""
-    a, b, c, d = (matrix[..., i, j] for i in (0, 1) for j in (0, 1))
-    determinant = (a * d - b * c)[..., np.newaxis, np.newaxis]
-    found: Array = _matrix(d, -b, -c, a) @ right / determinant
+    (a, b), (c, d) = matrix
+    found: Array = _times(_matrix(d, -b, -c, a), right) / (a * d - b * c)
     return found

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from octsim.optics.pupil import Pupil
 from octsim.schemes.fullwave.coupling import both_signs
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
+from octsim.schemes.fullwave.gauss_legendre import gauss_legendre
 from octsim.schemes.fullwave.illumination import Lit
 from octsim.schemes.fullwave.plane import fresnel, normal
 
@@ -69,7 +70,7 @@ def plane_return(
 
 def _radial(aperture: float, nodes: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return ρ and ρ dρ, Gauss–Legendre in ρ²."""
-    x, w = np.polynomial.legendre.leggauss(nodes)
+    x, w = gauss_legendre(nodes)
     return aperture * np.sqrt((x + 1) / 2), w * aperture**2 / 4
 
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from octsim.optics.pupil import Pupil
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
+from octsim.schemes.fullwave.gauss_legendre import gauss_legendre
 from octsim.schemes.fullwave.plane import normal, reflection
 
 Array = NDArray[Any]
@@ -77,7 +78,7 @@ def illumination(
     waves, nodes : int
         Largest order M, and Gauss–Legendre nodes over k_x / k > 0.
     """
-    x, w = np.polynomial.legendre.leggauss(nodes)
+    x, w = gauss_legendre(nodes)
     reach = np.sqrt(aperture**2 - along**2)[:, np.newaxis]
     across = reach * (x + 1) / 2
     sideways = np.broadcast_to(along[:, np.newaxis], across.shape)
@@ -86,7 +87,8 @@ def illumination(
     r = reflection(
         sideways + 0j, across + 0j, below, above, scene.n_glass, scene.n_water, upwards=True
     )
-    angle = np.arctan2(across, above.real) + 0j
+    odd, even = mirror_waves(0, np.arctan2(across, above.real), waves)
+    classes = (odd, even), (even, odd)
     wavenumber = k[:, np.newaxis, np.newaxis]
     weight = np.stack([pupil.amplitude(sine, aperture, one) for one in k.tolist()])
     # both halves of the integral over k_x
@@ -104,7 +106,7 @@ def illumination(
             # a matrix for each k_y, over all wavenumbers
             sides = (
                 _over_across(part * field, waves_of)
-                for field, waves_of in zip(through, mirror_waves(mirror, angle, waves), strict=True)
+                for field, waves_of in zip(through, classes[mirror], strict=True)
             )
             found.append(Lit(polarisation, mirror, *sides))
     return found

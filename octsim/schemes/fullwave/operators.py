@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from octsim.schemes.fullwave.coupling import Coupling, contour, coupling
 from octsim.schemes.fullwave.cylinder import Scattering, scattering
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
+from octsim.schemes.fullwave.gauss_legendre import gauss_legendre
 from octsim.schemes.fullwave.illumination import mirror_waves
-from octsim.schemes.fullwave.orders import Orders
+from octsim.schemes.fullwave.orders import Orders, waves_along
 
 Array = NDArray[Any]
 _KEPT = 6
@@ -35,12 +36,14 @@ def operator(
     scene: CylinderOnPlane, aperture: float, k: NDArray[np.float64], orders: Orders
 ) -> Operator:
     """Return the operator of a scene, for all k_y / k up to an aperture."""
-    x, w = np.polynomial.legendre.leggauss(orders.along)
+    x, w = gauss_legendre(orders.along)
     # closer where the phase turns fastest, at the rim: a tenth of the error of evenly mapped nodes
     u = (x + 1) / 2
     along, weight = aperture * (1.5 - 0.5 * u) * u, aperture * w * (1.5 - u)
-    least = np.sqrt(scene.n_water**2 - aperture**2) * scene.height * float(k.min())
-    path = contour(orders.contour, orders.waves, least)
+    # it reaches farthest for light straight across, or for that of the rim
+    both = along[[0, -1]]
+    heights = np.sqrt(scene.n_water**2 - both**2) * scene.height * float(k.min())
+    path = contour(orders.contour, waves_along(scene, both, k[:1], orders.waves)[0], heights)
     return Operator(
         k, along, weight,
         scattering(scene, along, k, orders.waves),

@@ -3,11 +3,14 @@
 import math
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
+from octsim.schemes.cost import MOST_WAVENUMBERS, MOST_WAVES, partial_waves, wavenumbers
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 
-MOST_WAVES = 400
 MOST_NODES = 400
-_TRIES = 8
+"""Of each integral."""
 
 
 class Orders(NamedTuple):
@@ -24,7 +27,10 @@ class Orders(NamedTuple):
 
     def raised(self) -> "Orders":
         """Return the next orders to try, or to compare with."""
-        return Orders(*(number + max(2, math.ceil(0.2 * number)) for number in self))
+        waves = self.waves + 2 + math.ceil(0.6 * math.cbrt(self.waves))
+        across, contour = (number + max(2, math.ceil(0.2 * number)) for number in self[1:3])
+        # resonances along the cylinder make this integral the slowest to converge
+        return Orders(waves, across, contour, self.along + max(3, math.ceil(0.35 * self.along)))
 
     @property
     def within_budget(self) -> bool:
@@ -39,11 +45,26 @@ def first_orders(
     digits = -math.log10(accuracy)
     size = largest_k * scene.radius * max(scene.n_neuron, scene.n_water)
     spread = abs(_defocus(scene, aperture, focus)) * largest_k
-    waves = size + (1 + 0.35 * digits) * size ** (1 / 3) + 0.5
+    sideways = largest_k * abs(scene.offset) * aperture
     return Orders(
-        math.ceil(waves), math.ceil(3 + digits + 0.25 * (size + spread)), math.ceil(14 + size),
+        math.ceil(partial_waves(size, digits)),
+        math.ceil(3 + digits + 0.25 * (size + spread) + 0.5 * sideways), math.ceil(14 + size),
         math.ceil(2 + 0.75 * digits + 0.85 * size + 0.5 * spread),
     )  # fmt: skip
+
+
+def waves_along(
+    scene: CylinderOnPlane, along: NDArray[np.float64], k: NDArray[np.float64], waves: int
+) -> NDArray[np.float64]:
+    """Return the largest orders of light with components k_y / k (Y,) at wavenumbers (K,): (K, Y).
+
+    As many beyond k a κ, in cube roots of it, as M is beyond the largest.
+    """
+    index = max(scene.n_water, scene.n_neuron)
+    size = scene.radius * k[:, np.newaxis] * np.sqrt(index**2 - along**2)
+    largest = size.max()
+    found: NDArray[np.float64] = size + (waves - largest) * np.cbrt(size / largest)
+    return found
 
 
 def radial_nodes(point_aperture: float, n_glass: float, focus: float, largest_k: float) -> int:
@@ -60,12 +81,25 @@ def _defocus(scene: CylinderOnPlane, aperture: float, focus: float) -> float:
     return scene.height * in_water - focus * in_glass
 
 
-def first_nodes(scene: CylinderOnPlane, band: tuple[float, float], accuracy: float) -> int:
+def first_nodes(
+    scene: CylinderOnPlane, aperture: float, focus: float, band: tuple[float, float],
+    accuracy: float,
+) -> int:  # fmt: skip
     """Return the wavenumbers in a band that are usually enough."""
-    reach = scene.n_neuron * scene.diameter + scene.n_water * scene.gap
-    return math.ceil(2.5 + 0.75 * (band[1] - band[0]) * reach - 1.35 * math.log10(accuracy))
+    # the plane's light of the pupil's rim is apart from that of the axis by the focus's distance
+    rim = 2 * focus * (scene.n_glass - math.sqrt(scene.n_glass**2 - aperture**2))
+    far_side = _far_side(scene)
+    return _nodes(max(far_side, abs(rim - far_side)), band, accuracy)
 
 
 def most_nodes(scene: CylinderOnPlane, band: tuple[float, float], accuracy: float) -> int:
-    """Return the wavenumbers in a band that are not exceeded."""
-    return min(MOST_NODES, 2 * first_nodes(scene, band, accuracy) + 4)
+    """Return the wavenumbers in a band that are not exceeded, whatever the focus."""
+    return min(MOST_WAVENUMBERS, 2 * _nodes(_far_side(scene), band, accuracy) + 24)
+
+
+def _far_side(scene: CylinderOnPlane) -> float:
+    return scene.n_neuron * scene.diameter + scene.n_water * scene.gap
+
+
+def _nodes(reach: float, band: tuple[float, float], accuracy: float) -> int:
+    return math.ceil(wavenumbers(reach, band[1] - band[0], -math.log10(accuracy)))

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.schemes.fullwave.coupling import both_signs, reflected
+from octsim.schemes.fullwave.coupling import Coupling, both_signs, reflected
 from octsim.schemes.fullwave.illumination import Lit
 from octsim.schemes.fullwave.operators import Operator
 
@@ -18,8 +18,8 @@ _ITERATIONS = 40
 def incoming(operator: Operator, lit: Lit, tolerance: float) -> Waves:
     """Return all regular waves that reach the cylinder, a + R b, of one mirror class.
 
-    By iteration, once through the plane each time; directly where that does not converge, as for
-    an index far from the water's.
+    By iteration, once through the plane each time; directly at those k and k_y where that does not
+    converge, as for an index far from the water's or a large cylinder.
 
     Parameters
     ----------
@@ -39,40 +39,56 @@ def incoming(operator: Operator, lit: Lit, tolerance: float) -> Waves:
         e, h = lit.e + back_e, lit.h + back_h
         # outgoing waves tell: regular ones of high orders are large, and scatter nothing
         following = scattered(whole, e, h)
-        change = max(float(np.abs(b - a).max()) for a, b in zip(out, following, strict=True))
+        of_e, of_h = (np.abs(b - a).max(axis=-1) for a, b in zip(out, following, strict=True))
+        changes = np.maximum(of_e, of_h)
         out = following
-        if change <= tolerance * max(float(np.abs(b).max()) for b in out):
+        change = float(changes.max())
+        left = changes > tolerance * max(float(np.abs(b).max()) for b in out)
+        if not left.any():
             return e, h
         if not change < before:
             break
         before = change
-    return _direct(operator, lit)
+    for number in np.flatnonzero(left.any(axis=1)).tolist():
+        one = number, left[number]
+        e[one], h[one] = _direct(operator, lit, one)
+    return e, h
 
 
 def scattered(matrix: Array, e: Array, h: Array) -> Waves:
-    """Return the outgoing waves of matrices (K, Y, M + 1, 2, 2) and regular ones."""
-    return (
-        matrix[..., 0, 0] * e + matrix[..., 0, 1] * h,
-        matrix[..., 1, 0] * e + matrix[..., 1, 1] * h,
-    )
+    """Return the outgoing waves of matrices (2, 2, K, Y, M + 1) and regular ones."""
+    (ee, eh), (he, hh) = matrix
+    return ee * e + eh * h, he * e + hh * h
 
 
-def _direct(operator: Operator, lit: Lit) -> Waves:
-    """Solve (1 − T R) b = T a by elimination, for each k and k_y, and return a + R b."""
-    waves_of, whole = operator.mirrors[lit.mirror], operator.cylinder.whole
-    orders, plane = waves_of[0].shape[0], operator.plane
+def _direct(operator: Operator, lit: Lit, one: tuple[int, NDArray[np.bool_]]) -> Waves:
+    """Solve (1 − T R) b = T a by elimination, for one k and some k_y, and return a + R b there."""
+    waves_of, whole = operator.mirrors[lit.mirror], operator.cylinder.whole[:, :, *one]
+    plane = Coupling(*(part[one] for part in operator.plane))
+    e, h = lit.e[one], lit.h[one]
+    orders = e.shape[-1]
     signs = both_signs(orders)[:, np.newaxis]
-    back = np.empty((*lit.e.shape[:2], 2, orders, 2, orders), np.complex128)
-    parts = {(0, 0): plane.ee, (0, 1): plane.eh, (1, 0): plane.he, (1, 1): plane.hh}
-    for (to, of), part in parts.items():
-        back[:, :, to, :, of, :] = (waves_of[to] * part[..., np.newaxis, :]) @ (
-            signs * waves_of[of]
-        ).T
-    # T R: each order of T by itself
-    both = np.einsum("kymto,kyomin->kytmin", whole, back)
-    size = 2 * orders
-    matrix = np.eye(size) - both.reshape(*lit.e.shape[:2], size, size)
-    right = np.concatenate(scattered(whole, lit.e, lit.h), axis=-1)[..., np.newaxis]
-    found = np.linalg.solve(matrix, right)[..., 0]
-    back_e, back_h = reflected(plane, found[..., :orders], found[..., orders:], *waves_of)
-    return lit.e + back_e, lit.h + back_h
+    parts = ((plane.ee, plane.eh), (plane.he, plane.hh))
+    back = [
+        [(waves_of[to] * parts[to][of][:, np.newaxis]) @ (signs * waves_of[of]).T for of in (0, 1)]
+        for to in (0, 1)
+    ]
+    # T falls with the order as fast as R grows: unknowns are b over the root of T
+    scale = np.sqrt(np.abs(whole).max(axis=(0, 1)))
+    inverse = np.divide(1.0, scale, out=np.zeros_like(scale), where=scale > 0)
+    balance = inverse[:, :, np.newaxis] * scale[:, np.newaxis]
+    # T R, each order of T by itself
+    both = np.block(
+        [
+            [
+                balance * sum(whole[to, i][..., np.newaxis] * back[i][of] for i in (0, 1))
+                for of in (0, 1)
+            ]
+            for to in (0, 1)
+        ]
+    )
+    right = np.concatenate([part * inverse for part in scattered(whole, e, h)], axis=-1)
+    found = np.linalg.solve(np.eye(2 * orders) - both, right[..., np.newaxis])[..., 0]
+    out_e, out_h = found[:, :orders] * scale, found[:, orders:] * scale
+    back_e, back_h = reflected(plane, out_e, out_h, *waves_of)
+    return e + back_e, h + back_h

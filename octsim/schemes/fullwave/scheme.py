@@ -21,7 +21,11 @@ def tracer(optics: Optics, options: Options) -> LightAt:
     options : mapping
         ``accuracy``, largest error of the intensity over the largest intensity.
     """
-    operators = Operators()
+    return sharing(optics, options, Operators())
+
+
+def sharing(optics: Optics, options: Options, operators: Operators) -> LightAt:
+    """Return such a function whose operators others share, as of another pupil."""
 
     def light_at(scene: Scene, focus: float) -> Waves:
         found = solve(

@@ -25,8 +25,11 @@ from octsim.schemes.light import TERMS, AccuracyStatus, Waves
 Array = NDArray[Any]
 _CHECKED = 3
 """Wavenumbers at which a solution is compared with one of raised orders."""
-_TAIL = 3
-"""Chebyshev coefficients, the last, that tell of those left out."""
+_LAST, _BEFORE = slice(-3, None), slice(-6, -3)
+"""Chebyshev coefficients that tell of those left out."""
+
+_ROUNDING = 2e-14
+"""Error over the field's size below which more orders bring nothing."""
 
 
 class Point(NamedTuple):
@@ -117,18 +120,20 @@ def solve(
     """
     point = Point(scene, pupil, aperture, focus)
     orders = first_orders(scene, aperture, focus, band[1], accuracy)
-    number, most = first_nodes(scene, band, accuracy), most_nodes(scene, band, accuracy)
+    number = first_nodes(scene, aperture, focus, band, accuracy)
+    most = most_nodes(scene, band, accuracy)
     removed = removed_path(scene, focus)
-    best = None
+    best, checked, by_orders = None, None, np.inf
     while orders.within_budget and number <= most:
         k = nodes(band, number)
-        found = field_at(point, k, orders, 1e-2 * accuracy, operators)
-        check = np.unique(np.linspace(0, number - 1, _CHECKED).round().astype(int))
-        finer = field_at(point, k[check], orders.raised(), 1e-3 * accuracy, operators)
-        by_orders = 2 * float(np.abs(finer.values - found.values[:, check]).max())
+        found = field_at(point, k, orders, 1e-3 * accuracy, operators)
+        if orders != checked:
+            check = np.unique(np.linspace(0, number - 1, _CHECKED).round().astype(int))
+            finer = field_at(point, k[check], orders.raised(), 1e-4 * accuracy, operators)
+            by_orders = 2 * float(np.abs(finer.values - found.values[:, check]).max())
+            checked = orders
         slow = np.exp(-1j * k * removed)
-        series = np.abs(coefficients(found.values * slow))
-        by_nodes = float(series[-_TAIL:].sum(axis=0).max())
+        by_nodes = _left_out(np.abs(coefficients(found.values * slow)))
         error = by_orders + by_nodes
         largest = float(np.sqrt((np.abs(found.values) ** 2).mean(axis=0).max()))
         reached = relative_error(largest, error) <= accuracy
@@ -136,12 +141,12 @@ def solve(
         best = Waves(
             k, found.values * slow, found.terms * slow, removed, 0.0, error, orders.waves, status
         )
-        if reached:
+        if reached or error < _ROUNDING * largest:
             return best
         if by_orders > by_nodes / 2:
             orders = orders.raised()
         if by_nodes > by_orders / 2:
-            number += 3
+            number += max(3, number // 8)
     if best is not None:
         return best
     k = nodes(band, 1)
@@ -150,6 +155,16 @@ def solve(
         k, nothing, np.stack([nothing] * len(TERMS)), removed, 0.0, np.inf, orders.waves,
         AccuracyStatus.BUDGET_SPENT,
     )  # fmt: skip
+
+
+def _left_out(series: NDArray[np.float64]) -> float:
+    """Return what Chebyshev coefficients (N, 2) say of those after them, in size.
+
+    The last ones, and as many times more as they fall slowly: by resonances of a large cylinder.
+    """
+    last, before = (series[part].sum(axis=0) for part in (_LAST, _BEFORE))
+    fall = np.clip(last / np.maximum(before, last), 1 / 3, 0.8)
+    return float((2 * last * fall / (1 - fall)).max())
 
 
 def removed_path(scene: CylinderOnPlane, focus: float) -> float:

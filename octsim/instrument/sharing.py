@@ -1,0 +1,38 @@
+"""Instruments that differ in their pupil alone, and solve a scene for all of them together."""
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from octsim.config.models import Config
+from octsim.instrument.instrument import Instrument, PointSpectrum
+from octsim.schemes.field_sum import spectrum_of
+from octsim.schemes.fullwave.operators import Operators
+from octsim.schemes.fullwave.scheme import sharing
+from octsim.schemes.light import Found, LightAt
+
+
+class SharingInstrument(Instrument):
+    """An instrument by scheme fullwave that shares with others how scenes scatter.
+
+    Parameters
+    ----------
+    config : Config
+        Whose scheme is fullwave.
+    operators : Operators
+        Where those are kept that several instruments share.
+    """
+
+    def __init__(self, config: Config, operators: Operators) -> None:
+        super().__init__(config)
+        self._operators = operators
+
+    def over(self, light: Found, wavenumber: NDArray[np.float64]) -> PointSpectrum:
+        """Sum light of this instrument over wavenumbers (K,), 1/µm, within its band."""
+        field = self.scheme.field(light, wavenumber, self._optics, self._options)
+        return PointSpectrum(*spectrum_of(field), light.status)
+
+    @cached_property
+    def _tracer(self) -> LightAt:
+        return sharing(self._optics, self._options, self._operators)

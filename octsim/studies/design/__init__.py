@@ -1,0 +1,1 @@
+"""Which fill, focus, aperture, band and estimator know an expansion best (`snakemake design`)."""
