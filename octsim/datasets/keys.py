@@ -33,6 +33,7 @@ def _read(stage: str, config: Config) -> Iterator[str]:
             # at a preset, whatever the section tracing asks for
             every = light_keys(by_light_paths(config))
             yield from (one for one in every if not one.startswith("tracing."))
+            yield "tracing.scheme"  # which decides whether it is looked at
         elif key == SUMMING:
             yield from scheme_of(config).summing_keys
         else:

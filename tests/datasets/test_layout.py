@@ -17,7 +17,7 @@ def test_a_dataset_over_a_grid_holds_that_of_every_plain_config(name: str) -> No
     config, whole = run_of_grid(name)
     for at in combinations(config):
         plain = every_stage(at.config)
-        for stage in stages_of(config):
+        for stage in stages_of(at.config):
             swept = "focus" if stage == "focus_scan" else "diameter"
             part, alone = Stored(whole[stage], stage, config).part(at, swept=swept), plain[stage]
             if stage == "paths":  # it lists the paths of all combinations
@@ -53,7 +53,8 @@ def test_blocks_threads_and_order_change_no_bit(monkeypatch: pytest.MonkeyPatch)
                 assert one.drop_attrs().identical(other.drop_attrs()), stage
 
 
-@pytest.mark.parametrize("name", GRIDS)
+# of a grid over kinds of light, a stage has the points of some combinations
+@pytest.mark.parametrize("name", sorted(set(GRIDS) - {"waves"}))
 def test_the_points_of_a_stage_s_parts_are_all_that_its_layout_counts(name: str) -> None:
     config = gridded(GRIDS[name], GIVEN)
     sweep = octsim.focus_sweep(config)
