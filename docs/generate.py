@@ -13,8 +13,10 @@ from calibration_page import calibration_page
 from design_page import design_page
 from estimators_page import estimators_page
 from markdown import table
+from maxwell_part import claim
 from pydantic import BaseModel
 from spike_page import spike_page
+from validity_page import validity_page
 
 import octsim
 from octsim.config.derive import reference
@@ -292,6 +294,8 @@ def tradeoff() -> str:
             ],
         ),
         exponent=f"{float(trade['rays_law_exponent']):.2f}".replace("-", "−"),
+        claim=claim(trade),
+        maxwell=trade.attrs["maxwell"],
         check=f"{float(check['worst_intensity_error'].max()):.1e}",
         diameters=diameters,
         part=int(part.min()),
@@ -310,6 +314,8 @@ TRADE_COLUMNS = {
     "of the phase slope, rms (mrad/nm)": ("phase_slope_rms_error", 1, ".1e"),
     "largest": ("phase_slope_largest_error", 1, ".1e"),
     "of the law's focus (nm)": ("focus_error", 1e3, ".1e"),
+    "of the spectrum's shape from Maxwell, worst": ("maxwell_spectrum_worst_error", 1, ".1e"),
+    "of the slope from Maxwell, rms (mrad/nm)": ("maxwell_slope_rms_error", 1, ".1e"),
     "segments a diameter": ("segments_per_diameter", 1, ".3g"),
     "CPU (s)": ("cpu_seconds", 1, ".3g"),
     "memory (MiB)": ("peak_memory", 1, ".1f"),
@@ -325,28 +331,41 @@ Written by `make docs` from `results/thesis/tradeoff.nc`; do not edit. `make doc
 
 ![Error over cost](figures/tradeoff.png)
 
-One key of the config is varied at a time: `rays` and `min_amplitude` with the scheme `vogel`, all
-else with `paths`, where the accuracy is 1e-6 unless it is what is varied. Errors are those from a
-reference: `paths` at {accuracy:g} and {most} intersections, of the same diameters, foci and
-wavenumbers. With 1e-8 and 30 intersections it moves by {check}, at {part} of the diameters. The
-error of I(k) is max |ΔI| / max I over k, the worst and the median over the diameters, and at how
-many it is above the accuracy that was asked for (fewer intersections than the light takes are no
-matter of the accuracy). The slope of fewer or more `samples` is compared with that of {samples},
-the slope of fewer or more diameters with that of {finer} times the run's steps; the law's focus
-with the reference's, at its largest difference over the sweep. A dash stands for what was not
-measured, or for a law without a peak.
+One key of the config is varied at a time: `rays` and `min_amplitude` with the scheme `vogel`, the
+accuracy of Maxwell's equations with `fullwave`, all else with `paths`, where the accuracy is 1e-6
+unless it is what is varied. Errors are those from a scheme's own limit, unless they are said to
+be from Maxwell: of `fullwave` that at 1e-9, of rays a reference, `paths` at {accuracy:g} and
+{most} intersections, of the same diameters, foci and wavenumbers. With 1e-8 and 30 intersections
+the latter moves by {check}, at {part} of the diameters. The error of I(k) is max |ΔI| / max I
+over k, the worst and the median over the diameters, and at how many it is above the accuracy that
+was asked for (fewer intersections than the light takes are no matter of the accuracy). The slope
+of fewer or more `samples` is compared with that of {samples}, the slope of fewer or more
+diameters with that of {finer} times the run's steps; the law's focus with the reference's, at its
+largest difference over the sweep. A dash stands for what was not measured, or for a law without a
+peak.
 
 Costs are those of the sweep's {diameters} diameters on one thread: segments traced a diameter (for
 `paths` those that look for the paths too), processor time to trace and sum, and by how much the
 process's memory grew. Where there is no error of the slope, {part} diameters were traced and the
-time is scaled to the sweep. *Efficient* is what no other setting of `tracing` beats in both
-segments and worst error. Time and memory are this machine's, and differ from run to run.
+time is scaled to the sweep. Waves have no segments, their cost is time. *Efficient* is what no
+other setting of rays beats in both segments and worst error. Time and memory are this machine's,
+and differ from run to run.
 
 ## The presets, and the run itself
 
 {named}
 `tracing: {{preset: standard}}` takes one.
 
+## Errors from Maxwell's equations
+
+![Error from Maxwell over time](figures/truth.png)
+
+They are measured from {maxwell}; each scheme has its own pupil, unless the config gives one
+([scenes.md](scenes.md)), and all the same foci. Of a spectrum the *shape* is compared, I over its
+mean over k, as what an intensity of 1 is differs between schemes. The slope is that of the Fourier
+transform's strongest component, whose jumps are part of the rms.
+
+{claim}
 ## Light paths beside counted rays
 
 {targets}
@@ -373,13 +392,14 @@ if __name__ == "__main__":
         "spike": lambda: spike_page(xr.load_dataset(RESULTS / "causes.nc")),
         "estimators": lambda: estimators_page(xr.load_dataset(RESULTS / "estimators.nc")),
         "calibration": lambda: calibration_page(RESULTS),
+        "validity": lambda: validity_page(xr.load_dataset(RESULTS / "validity.nc")),
         "design": lambda: design_page(xr.load_dataset(RESULTS / "design.nc")),
     }
     for name, page in pages.items():
         (DOCS / f"{name}.md").write_text(page(), encoding="utf-8")
     drawn = (
-        "figure_12", "stability", "tradeoff", "causes", "spike", "estimators", "calibration",
-        "action_potential", "design",
+        "figure_12", "stability", "tradeoff", "truth", "causes", "spike", "estimators",
+        "calibration", "action_potential", "design", "validity",
     )  # fmt: skip
     for figure in drawn:
         shutil.copy(RESULTS / "figures" / f"{figure}.png", DOCS / "figures" / f"{figure}.png")

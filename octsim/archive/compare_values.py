@@ -9,7 +9,12 @@ from numpy.typing import NDArray
 
 from octsim.phase.derivatives import wrapped
 
-MEASURED = frozenset({"cpu_seconds", "peak_memory", "estimator_seconds", "phase_slope_frontier"})
+MEASURED = frozenset(
+    {
+        "cpu_seconds", "peak_memory", "estimator_seconds", "phase_slope_frontier",
+        "maxwell_frontier", "maxwell_slope_frontier",
+    }
+)  # fmt: skip
 """Variables that a clock or the system gave, or that follow from one: another run has others."""
 WRAPPED = frozenset({"phase", "field_phase", "estimated_phase", "spike_leaked_phase"})
 """Angles that are known but for whole turns."""

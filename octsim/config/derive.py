@@ -10,7 +10,7 @@ from octsim.config.abilities import as_far_as
 from octsim.config.checks import require_possible
 from octsim.config.messages import explain
 from octsim.config.models import Config
-from octsim.schemes.table import COUNTED_RAYS, LIGHT_PATHS, PRESETS
+from octsim.schemes.table import COUNTED_RAYS, FULL_WAVE, LIGHT_PATHS, PRESETS
 
 _PRESET = "tracing.preset"
 _SET_BY_PRESETS = sorted({f"tracing.{key}" for preset in PRESETS.values() for key in preset})
@@ -156,6 +156,14 @@ def by_light_paths(config: Config) -> Config:
         update={"scheme": LIGHT_PATHS.name, **LIGHT_PATHS.presets["standard"]}
     )
     return as_far_as(LIGHT_PATHS, config).model_copy(update={"tracing": tracing})
+
+
+def by_waves(config: Config) -> Config:
+    """Return a config of the scheme fullwave, at its preset exact."""
+    tracing = config.tracing.model_copy(
+        update={"scheme": FULL_WAVE.name, **FULL_WAVE.presets["exact"]}
+    )
+    return as_far_as(FULL_WAVE, config).model_copy(update={"tracing": tracing})
 
 
 def reference(config: Config) -> Config:

@@ -124,8 +124,8 @@ _RUN = (
     Stage(
         "phase_slope", "octsim.stages.phase_slope:phase_slope",
         "Differentiate their phase over the diameter",
-        reads=("processing", "scene"), after=("fourier",),
-        job="phase_slope", summary="octsim.stages.phase_slope:summary",
+        reads=("processing", "scene"), after=("fourier", "spectra"),
+        job="phase_slope", summary="octsim.stages.beside_maxwell:summary",
         per_sample=(1e-7, 12.0),  # magnitude, phase and slopes of half as many components
         figures=(
             Figure("figure_12", "octsim.figures.phase_slope:figure_12",
@@ -151,11 +151,23 @@ _BESIDE = (
     Stage(
         "tradeoff", "octsim.studies.tradeoff.study:tradeoff",
         "Measure error and cost, one setting after the other",
-        reads=(*_COMPARED, "focus_law"), beside=True,
+        reads=(*_COMPARED, "polarisation", "focus_law"), beside=True,
         summary="octsim.studies.tradeoff.study:summary",
         figures=(
             Figure("tradeoff", "octsim.figures.tradeoff:tradeoff_figure",
                    "error over cost of each setting"),
+            Figure("truth", "octsim.figures.tradeoff:truth_figure",
+                   "error from Maxwell's equations over time"),
+        ),
+    ),
+    Stage(
+        "validity", "octsim.studies.validity.study:validity",
+        "Compare rays with Maxwell's equations, one quantity varied at a time",
+        reads=(*_COMPARED, "polarisation"), after=("focus_law",), beside=True,
+        summary="octsim.studies.validity.study:summary",
+        figures=(
+            Figure("validity", "octsim.figures.validity:validity_figure",
+                   "where rays are within 1, 3 and 10 % of Maxwell's equations"),
         ),
     ),
     Stage(

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from octsim.datasets.design_variables import DESIGN
+from octsim.datasets.validity_variables import VALIDITY
 
 MEANINGS: Mapping[str, tuple[str, str]] = {
     # name: (units, long_name)
@@ -18,6 +19,8 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "diameter": ("um", "diameter of the cylinder"),
     "estimated_depth": ("um", "optical depth by the estimator"),
     "estimated_phase": ("rad", "phase by the estimator, at the middle of the band"),
+    "exact_phase_slope": ("mrad/nm", "phase slope by Maxwell's equations, at a few diameters"),
+    "exact_status": ("1", "whether it is compared with Maxwell's equations, or why not"),
     "field_amplitude": ("1", "magnitude of the field at the middle of the band"),
     "field_error": ("1", "estimated error of the field, largest over band and polarisations"),
     "field_phase": ("rad", "phase of the field at the middle of the band, in (-pi, pi]"),
@@ -124,6 +127,13 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "law_slope_error": ("1", "error of the focus law's slope"),
     "law_intercept_error": ("um", "error of the focus law's intercept"),
     "focus_error": ("um", "largest error of the focus by the law, over the sweep"),
+    "maxwell_spectrum_worst_error": ("1", "error of the spectrum's shape from Maxwell's, largest"),
+    "maxwell_spectrum_median_error": ("1", "error of the spectrum's shape from Maxwell's, median"),
+    "maxwell_slope_rms_error": ("mrad/nm", "error of the phase slope from Maxwell's, rms"),
+    "maxwell_slope_largest_error": ("mrad/nm", "largest error of the phase slope from Maxwell's"),
+    "maxwell_slope_bias": ("mrad/nm", "mean of the phase slope less that of Maxwell's"),
+    "maxwell_frontier": ("1", "whether none has as true a spectrum in as little time"),
+    "maxwell_slope_frontier": ("1", "whether none has as true a slope in as little time"),
     "segments_per_diameter": ("1", "mean number of straight pieces of ray traced a diameter"),
     "cpu_seconds": ("s", "processor time to trace and sum the sweep"),
     "peak_memory": ("MiB", "growth of the process's largest resident set"),
@@ -273,6 +283,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "coverage_noise": ("1", "the same of an instrument as believed, by the statistical error"),
     "coverage_instrument": ("1", "the same without noise, by the systematic error"),
     **DESIGN,
+    **VALIDITY,
 }
 _STANDARD_ERROR = "_standard_error"
 

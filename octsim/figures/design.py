@@ -32,7 +32,7 @@ def _draw_map(figure: Figure, axes: Axes, table: xr.Dataset) -> None:
         table["focus_offset"], places, np.log10(least), shading="nearest", cmap="viridis_r"
     )
     bar = figure.colorbar(mesh, ax=axes)
-    bar.set_label(f"log₁₀ of the least {label(error)}")
+    bar.set_label("log₁₀ of the least standard error (nm)")
     for row, values in enumerate(least.values):
         for focus, value in zip(table["focus_offset"].values, values, strict=True):
             if np.isfinite(value):

@@ -27,6 +27,13 @@ def draw_components(
         )  # fmt: skip
 
 
+def _exact(slopes: xr.Dataset) -> NDArray[np.bool_]:
+    """Return at which diameters the slope by Maxwell's equations is known, (D,)."""
+    if "exact_phase_slope" not in slopes:  # files of 0.3.0 and before don't have it
+        return np.zeros(slopes.sizes["diameter"], bool)
+    return np.asarray(np.isfinite(slopes["exact_phase_slope"].values))
+
+
 def figure_12(slopes: xr.Dataset) -> Figure:
     """Draw the phase slope by component, the ideal curve and the prediction (thesis fig. 12)."""
     figure = Figure()
@@ -43,11 +50,20 @@ def figure_12(slopes: xr.Dataset) -> Figure:
         diameter, slopes["ideal_phase_slope"],
         color=GREEN, linestyle="--", label="ideal spectrum cos(2ndk)",
     )  # fmt: skip
+    exact = _exact(slopes)
+    if exact.any():
+        axes.plot(
+            diameter[exact], slopes["exact_phase_slope"][exact],
+            color=BLACK, linewidth=0.8, marker="D", markersize=5, markerfacecolor="white",
+            label="Maxwell's equations", zorder=3,
+        )  # fmt: skip
     predicted = float(slopes["predicted_phase_slope"])
     axes.axhline(
         predicted, color=BLACK, linestyle="-.", label=f"prediction {predicted:.2f} mrad/nm"
     )
-    shown = np.concatenate((slopes["phase_slope"].values, slopes["ideal_phase_slope"].values))
+    shown = np.concatenate([slopes[name].values for name in ("phase_slope", "ideal_phase_slope")])
+    if exact.any():
+        shown = np.append(shown, slopes["exact_phase_slope"].values[exact])
     shown = shown[np.isfinite(shown)] if np.isfinite(shown).any() else np.array([predicted])
     margin = 0.15 * max(float(np.ptp(shown)), 0.1)
     axes.set_ylim(shown.min() - margin, shown.max() + 3 * margin)

@@ -1,24 +1,28 @@
 """What accuracy costs: error over cost, the efficient frontier, the presets and the run itself."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from octsim.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILION, label, title
-from octsim.schemes.table import COUNTED_RAYS, LIGHT_PATHS
+from octsim.schemes.table import COUNTED_RAYS, FULL_WAVE, LIGHT_PATHS
+from octsim.studies.tradeoff.settings import OF_WAVES
 
+_Panels = tuple[tuple[str, str, str, str, str], ...]
 _FACTORS: Mapping[str, tuple[str, str, str]] = {
     # key of the config: colour, marker, what the legend says
     "tracing.rays": (ORANGE, "s", f"{COUNTED_RAYS.name}: rays"),
     "tracing.min_amplitude": (PURPLE, "v", f"{COUNTED_RAYS.name}: min_amplitude"),
     "tracing.accuracy": (BLUE, "o", f"{LIGHT_PATHS.name}: accuracy"),
+    OF_WAVES: (VERMILION, "*", f"{FULL_WAVE.name}: accuracy"),
     "tracing.max_intersections": (GREEN, "^", f"{LIGHT_PATHS.name}: max_intersections"),
     "run": (BLACK, "D", "the run's own"),
 }
-_PANELS = (
+_LIMITS: _Panels = (
     # cost, error, efficient, axis labels
     (
         "segments_per_diameter", "worst_intensity_error", "frontier",
@@ -29,13 +33,40 @@ _PANELS = (
         "processor time of the sweep, one thread", "error of the phase slope, rms",
     ),
 )  # fmt: skip
+_TRUTH: _Panels = (
+    (
+        "cpu_seconds", "maxwell_spectrum_worst_error", "maxwell_frontier",
+        "processor time of the sweep", "error of the spectrum's shape, worst",
+    ),
+    (
+        "cpu_seconds", "maxwell_slope_rms_error", "maxwell_slope_frontier",
+        "processor time of the sweep", "error of the phase slope, rms",
+    ),
+)  # fmt: skip
 
 
 def tradeoff_figure(measured: xr.Dataset) -> Figure:
-    """Draw the error of the intensity over segments, and that of the phase slope over time."""
+    """Draw the error of the intensity over segments, and that of the phase slope over time.
+
+    Each is that from the limit of the setting's own scheme; of waves no segments are traced.
+    """
+    figure, panels = _panels(measured, _LIMITS)
+    _law(panels[0], measured)
+    return _finished(figure, title(measured, "What accuracy costs"))
+
+
+def truth_figure(measured: xr.Dataset) -> Figure:
+    """Draw the errors from Maxwell's equations over time: of the spectrum, and of the slope."""
+    figure, _ = _panels(measured, _TRUTH)
+    said = f"Errors from Maxwell's equations\n{measured.attrs['maxwell']}"
+    return _finished(figure, title(measured, said))
+
+
+def _panels(measured: xr.Dataset, panels: _Panels) -> tuple[Figure, Sequence[Axes]]:
+    """Draw errors over costs, side by side."""
     figure = Figure(figsize=(10.5, 5.2))
-    panels = figure.subplots(1, 2)
-    for axes, (cost, error, efficient, *names) in zip(panels, _PANELS, strict=True):
+    drawn = list(figure.subplots(1, 2))
+    for axes, (cost, error, efficient, *names) in zip(drawn, panels, strict=True):
         _draw(axes, measured, cost, error)
         _frontier(axes, measured, cost, error, efficient)
         _name(axes, measured, cost, error)
@@ -44,10 +75,20 @@ def tradeoff_figure(measured: xr.Dataset) -> Figure:
         axes.set_xlabel(label(measured[cost], names[0]))
         axes.set_ylabel(label(measured[error], names[1]))
         axes.margins(0.09)
-    _law(panels[0], measured)
-    figure.suptitle(title(measured, "What accuracy costs"), fontsize=11)
-    handles, names = panels[0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="outside lower center", ncols=4, fontsize=8)
+    return figure, drawn
+
+
+def _finished(figure: Figure, heading: str) -> Figure:
+    """Give a figure its title, and one legend of what any of its panels shows."""
+    figure.suptitle(heading, fontsize=11)
+    shown: dict[str, Artist] = {}
+    for axes in figure.axes:
+        shown |= {
+            text: handle for handle, text in zip(*axes.get_legend_handles_labels(), strict=True)
+        }
+    figure.legend(
+        list(shown.values()), list(shown), loc="outside lower center", ncols=4, fontsize=8
+    )
     return figure
 
 
@@ -59,7 +100,8 @@ def _draw(axes: Axes, measured: xr.Dataset, cost: str, error: str) -> None:
     for factor, (colour, marker, text) in _FACTORS.items():
         of_factor = (measured["factor"] == factor) & (measured[error] > 0)
         for part, face in ((whole, colour), (~whole, "white")):
-            shown = measured.isel(setting=of_factor & part)
+            # of waves there are no segments, and no place over them
+            shown = measured.isel(setting=of_factor & part & measured[cost].notnull())
             if shown.sizes["setting"]:
                 axes.plot(
                     shown[cost], shown[error], linestyle="none", marker=marker, markersize=5,
@@ -95,7 +137,7 @@ def _name(axes: Axes, measured: xr.Dataset, cost: str, error: str) -> None:
     for number in range(measured.sizes["setting"]):
         one = measured.isel(setting=number)
         own, preset = bool(one["default"] == 1), str(one["preset"].item())
-        if not (own or preset) or not float(one[error]) > 0:
+        if not (own or preset) or not (float(one[error]) > 0 and float(one[cost]) > 0):
             continue
         place = float(one[cost]), float(one[error])
         colour = VERMILION if own else BLACK

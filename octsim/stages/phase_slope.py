@@ -7,7 +7,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from octsim.config.grid import Combination
 from octsim.config.models import Config
+from octsim.datasets.files import flags
 from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
@@ -25,15 +27,27 @@ _OF_SLOPES = (
 
 
 @Streamed
-def phase_slope(config: Config, transformed: xr.Dataset) -> Stream:
+def phase_slope(
+    config: Config, transformed: xr.Dataset, spectra: xr.Dataset | None = None
+) -> Stream:
     """Differentiate the phase over the diameter, and compare with the ideal and the prediction.
+
+    Parameters
+    ----------
+    config : Config
+        The run.
+    transformed : Dataset
+        Of the stage fourier.
+    spectra : Dataset, optional
+        Of the stage spectra, whose foci the comparison with Maxwell's equations is made at.
 
     Returns
     -------
     Dataset
         phase_slope, strongest_component, fringe_status and ideal_phase_slope (diameter),
         component_phase_slope(diameter, component), predicted_phase_slope, and the thesis's summary
-        figures as scalars.
+        figures as scalars. With spectra by rays, exact_phase_slope(diameter) by Maxwell's equations
+        at a few diameters, NaN at the others, and exact_status.
     """
 
     def own(config: Config) -> dict[str, Coordinate]:
@@ -41,20 +55,28 @@ def phase_slope(config: Config, transformed: xr.Dataset) -> Stream:
 
     title = "Phase slope: change of the spectrum's phase with the diameter"
     layout = Layout("phase_slope", config, title, own, "diameter", _component_count)
-    return Stream(layout, _differentiated(layout, Stored(transformed, "fourier", config, layout)))
+    stored = Stored(transformed, "fourier", config, layout)
+    foci = None if spectra is None else Stored(spectra, "spectra", config, layout)
+    return Stream(layout, _differentiated(layout, stored, foci))
 
 
 def _component_count(config: Config) -> dict[str, int]:
     return {"component": config.spectrum.samples // 2 + 1}
 
 
-def _differentiated(layout: Layout, stored: Stored) -> Iterator[Part]:
+def _differentiated(layout: Layout, stored: Stored, foci: Stored | None) -> Iterator[Part]:
     slopes: dict[str, list[NDArray[np.float64]]] = {"phase_slope": [], "ideal_phase_slope": []}
     for at, span in layout.blocks(block_points):
         count = layout.count(at)
         # a central difference looks at both neighbours
         wide = slice(max(span.start - 1, 0), min(span.stop + 1, count))
         variables = _slopes(at.config, stored.part(at, wide), span.start - wide.start, span)
+        if foci is not None:
+            if span.start == 0:
+                exact, status = _exact(layout, at, foci)
+            variables["exact_phase_slope"] = "diameter", exact[span]
+            if span.stop == count:
+                variables["exact_status"] = status
         for name, values in slopes.items():
             values.append(variables[name][1])
         if span.stop == count:
@@ -62,6 +84,22 @@ def _differentiated(layout: Layout, stored: Stored) -> Iterator[Part]:
             variables |= _figures(at.config, layout.own[at.position]["diameter"][1], **joined)
             slopes = {name: [] for name in slopes}
         yield Part(at, span.start, span.stop - span.start, variables)
+
+
+def _exact(
+    layout: Layout, at: Combination, stored: Stored
+) -> tuple[NDArray[np.float64], tuple[Any, ...]]:
+    """Return a combination's slopes by Maxwell's equations, and why there are none, if so."""
+    # here, as without spectra there is no need of light
+    from octsim.stages.by_maxwell import ExactSlopes, ExactStatus, exact_slopes
+
+    foci = stored.part(at, names=("focus",))["focus"].values
+    if at is layout.combinations[0]:
+        found = exact_slopes(at.config, foci)
+    else:
+        nothing = np.full(foci.size, np.nan)
+        found = ExactSlopes(nothing, ExactStatus.OTHER_COMBINATION)
+    return found.slope, ((), *flags(ExactStatus, np.array(found.status)))
 
 
 def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[str, Any]:

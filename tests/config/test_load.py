@@ -271,7 +271,9 @@ def test_the_default_config_file_is_the_defaults_and_names_every_key() -> None:
     optional |= {f"archive.creators.{name}" for name in ("name", "orcid", "affiliation")}
     optional |= {"objective.pupil.gaussian", "objective.pupil.fibre"}
     optional |= {
-        key for key in known_keys() if key.startswith(("scene.cylinders.", "scene.layers."))
+        key
+        for key in known_keys()
+        if key.startswith(("scene.cylinders.", "scene.layers.", "design.bands."))
     }
     assert keys(written) == set(known_keys()) - optional
 

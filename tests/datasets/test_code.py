@@ -80,7 +80,10 @@ def test_an_edit_of_the_scheme_paths_touches_no_run_by_counted_rays(
     changed: Callable[..., set[str]], name: str
 ) -> None:
     found = changed(name)
-    beside = {"stability", "tradeoff", "causes", "estimators", "calibration", "action_potential"}
+    beside = {
+        "stability", "tradeoff", "validity", "causes", "estimators", "calibration",
+        "action_potential",
+    }  # fmt: skip
     assert {one for one in found if one.startswith("vogel")} == {f"vogel {n}" for n in beside}
     assert {"paths detections", "paths focus_sweep", "paths focus_scan", "paths spectra"} <= found
     assert not {"octsim.tracing.kernel", "octsim.schemes.field_sum"} & found
@@ -96,7 +99,7 @@ def test_an_edit_of_a_stage_touches_that_stage_alone(changed: Callable[..., set[
         # the law reads how the fits ended, and who follows the law reads the law
         for stage in (
             "gaussian_fits", "focus_law", "detections", "spectra", "paths", "causes",
-            "estimators", "calibration", "action_potential", "tradeoff", "design",
+            "estimators", "calibration", "action_potential", "tradeoff", "design", "validity",
         )
     }  # fmt: skip
 

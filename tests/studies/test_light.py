@@ -31,7 +31,10 @@ SMALL = load_config({
     },
     "calibration": {"diameters": {"num": 8}},
 })  # fmt: skip
-MEASURED_ANEW = {"cpu_seconds", "peak_memory", "estimator_seconds", "phase_slope_frontier"}
+MEASURED_ANEW = {
+    "cpu_seconds", "peak_memory", "estimator_seconds", "phase_slope_frontier",
+    "maxwell_frontier", "maxwell_slope_frontier",
+}  # fmt: skip
 
 
 class Remembered(Points):

@@ -12,11 +12,12 @@ from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.datasets.files import read, write
 from octsim.figures.style import look, save
-from octsim.figures.tradeoff import tradeoff_figure
+from octsim.figures.tradeoff import tradeoff_figure, truth_figure
 from octsim.schemes.table import PRESETS
+from octsim.studies.tradeoff.errors import intensity_errors, shape_errors, why_no_maxwell
 from octsim.studies.tradeoff.frontier import cost_of_rays, efficient, power_law
-from octsim.studies.tradeoff.settings import is_the_runs, preset_of, settings
-from octsim.studies.tradeoff.study import intensity_errors, summary, tradeoff
+from octsim.studies.tradeoff.settings import OF_WAVES, is_the_runs, preset_of, settings
+from octsim.studies.tradeoff.study import summary, tradeoff
 
 TINY = load_config({
     "spectrum": {"samples": 100},
@@ -32,6 +33,7 @@ TINY = load_config({
 CHOSEN = {
     "tracing.rays": (300, 1000, 3000, 10_000),
     "tracing.accuracy": (1e-1, 3e-2, 1e-3, 1e-4, 1e-6, 1e-8),
+    OF_WAVES: (1e-2, 1e-4, 1e-8),
     "tracing.max_intersections": (3, 7),
     "tracing.min_amplitude": (0, 1e-3),
     "spectrum.samples": (50,),
@@ -83,10 +85,16 @@ def beaten(point: tuple[float, float], points: list[tuple[float, float]]) -> boo
 
 
 def test_the_frontier_holds_no_point_that_another_one_beats(measured: xr.Dataset) -> None:
-    traced = [str(factor).startswith("tracing.") for factor in measured["factor"].values]
-    for cost, error, name in (
-        ("segments_per_diameter", "worst_intensity_error", "frontier"),
-        ("cpu_seconds", "phase_slope_rms_error", "phase_slope_frontier"),
+    found = [str(factor).startswith("tracing.") for factor in measured["factor"].values]
+    by_rays = [
+        one and factor != OF_WAVES
+        for one, factor in zip(found, measured["factor"].values, strict=True)
+    ]
+    for cost, error, name, traced in (
+        ("segments_per_diameter", "worst_intensity_error", "frontier", by_rays),
+        ("cpu_seconds", "phase_slope_rms_error", "phase_slope_frontier", by_rays),
+        ("cpu_seconds", "maxwell_spectrum_worst_error", "maxwell_frontier", found),
+        ("cpu_seconds", "maxwell_slope_rms_error", "maxwell_slope_frontier", found),
     ):
         points = list(
             zip(measured[cost].values.tolist(), measured[error].values.tolist(), strict=True)
@@ -149,3 +157,50 @@ def test_the_dataset_explains_itself_and_is_drawn(measured: xr.Dataset, tmp_path
     assert "standard" in summary(stored)
     with look():
         save(tradeoff_figure(stored), tmp_path / "tradeoff.png")
+        save(truth_figure(stored), tmp_path / "truth.png")
+
+
+def test_rays_converge_to_their_own_limit_and_stay_off_maxwells(measured: xr.Dataset) -> None:
+    rays = of(measured, "tracing.accuracy", "maxwell_spectrum_worst_error")
+    assert of(measured, "tracing.accuracy", "worst_intensity_error")[-1] < 1e-7
+    # the diffraction of the pupil, which no number of rays has, is percents of the light
+    assert 0.01 < rays[-1] == pytest.approx(rays[-2], rel=1e-4)
+    slope = of(measured, "tracing.accuracy", "maxwell_slope_rms_error")
+    assert slope[-1] == pytest.approx(slope[-2], rel=1e-3)
+    assert slope[-1] >= abs(of(measured, "tracing.accuracy", "maxwell_slope_bias")[-1])
+
+
+def test_waves_converge_to_maxwell_and_have_no_segments(measured: xr.Dataset) -> None:
+    asked = of(measured, OF_WAVES, "value")
+    own = of(measured, OF_WAVES, "worst_intensity_error")
+    assert (own <= asked).all()
+    # a shape's error is that of the intensity, and at most that of its mean beside it
+    true = of(measured, OF_WAVES, "maxwell_spectrum_worst_error")
+    assert (true <= 4 * own).all()
+    assert np.isnan(of(measured, OF_WAVES, "segments_per_diameter")).all()
+    assert not of(measured, OF_WAVES, "frontier").any()
+    assert of(measured, OF_WAVES, "maxwell_frontier")[-1] == 1
+    assert np.isnan(of(measured, "spectrum.samples", "maxwell_spectrum_worst_error")).all()
+    assert "fullwave at 1e-09" in measured.attrs["maxwell"]
+
+
+def test_where_maxwell_is_not_solved_the_trade_is_one_of_rays_and_says_why() -> None:
+    steep = load_config({
+        **TINY.to_dict(),
+        "objective": {"numerical_aperture": 1.4},
+    })  # fmt: skip
+    assert "fullwave" in why_no_maxwell(steep)
+    assert OF_WAVES not in {setting.factor for setting in settings(steep, waves=False)}
+    chosen = [s for s in settings(steep, waves=False) if s.value == 300]
+    trade = tradeoff(steep, 2, chosen=chosen, separate=False)
+    assert np.isnan(trade["maxwell_spectrum_worst_error"]).all()
+    assert trade.attrs["maxwell"] == why_no_maxwell(steep)
+    with look():
+        truth_figure(trade)
+
+
+def test_a_shape_is_the_spectrum_over_its_mean() -> None:
+    exact = np.array([[1.0, 3.0, 2.0]])
+    assert shape_errors(5 * exact, exact) == pytest.approx(0)
+    # means 2 and 2.5: shapes 0.5, 1.5, 1 and 0.4, 1.2, 1.4
+    assert shape_errors(np.array([[1.0, 3.0, 3.5]]), exact) == pytest.approx(0.4 / 1.5)

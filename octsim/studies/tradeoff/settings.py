@@ -4,15 +4,18 @@ import math
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from octsim.config.derive import by_accuracy, by_rays, changed
+from octsim.config.derive import by_accuracy, by_rays, by_waves, changed
 from octsim.config.models import Config
 from octsim.config.scheme import scheme_of
-from octsim.schemes.table import PRESETS
+from octsim.schemes.table import FULL_WAVE, PRESETS
 
 RAYS = (100, 300, 1000, 3000, 10_000, 30_000, 100_000, 300_000, 1_000_000)
 ACCURACIES = (
     1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8,
 )  # fmt: skip
+EXACT_ACCURACIES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)
+OF_WAVES = f"tracing.accuracy, {FULL_WAVE.name}"
+"""The factor of the accuracy to which Maxwell's equations are solved."""
 MAX_INTERSECTIONS = (1, 3, 5, 7, 9, 11, 15)
 MIN_AMPLITUDES = (0.0, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2)
 SAMPLES = (50, 100, 200, 500, 1000, 2000, 4000)
@@ -40,17 +43,28 @@ class Setting(NamedTuple):
     """Whether the focus law is fitted."""
 
 
-def settings(config: Config) -> list[Setting]:
-    """Return the points of a run's trade, factor after factor.
+def settings(config: Config, waves: bool = True) -> list[Setting]:
+    """Return the points of a run's trade, factor after factor, with those of waves or without.
 
     The factor ``reference`` is the reference itself at other settings: how far it moves bounds
     its own error. The run's own setting is added as the factor ``run``, unless it is one of the
     others.
     """
-    listed = [*_tracing(config), *_sampling(config)]
+    solved = _solving(config) if waves else ()
+    listed = [*_tracing(config), *solved, *_sampling(config)]
     if not any(is_the_runs(setting, config) for setting in listed):
-        listed.append(Setting("run", math.nan, config))
+        listed.append(Setting("run", math.nan, config, law=not is_of_waves(config)))
     return listed
+
+
+def is_of_waves(config: Config) -> bool:
+    """Return whether a config's light is waves, of which no segments are traced."""
+    return scheme_of(config).light == "waves"
+
+
+def is_of_the_trade(setting: Setting) -> bool:
+    """Return whether a setting is a way to find light: none of sampling, nor the reference."""
+    return setting.factor == "run" or setting.factor.startswith("tracing.")
 
 
 def is_the_runs(setting: Setting, config: Config) -> bool:
@@ -60,7 +74,7 @@ def is_the_runs(setting: Setting, config: Config) -> bool:
 
 def preset_of(setting: Setting) -> str:
     """Return the name of the preset that a setting is, or nothing."""
-    if setting.factor == "tracing.accuracy":
+    if setting.factor in ("tracing.accuracy", OF_WAVES):
         for name, preset in PRESETS.items():
             if all(getattr(setting.config.tracing, key) == preset[key] for key in preset):
                 return name
@@ -95,6 +109,14 @@ def _tracing(config: Config) -> Iterator[Setting]:
         yield Setting("tracing.min_amplitude", least, fainter)
     other = by_accuracy(config, 1e-8, max_intersections=30)
     yield Setting("reference", 1e-8, other, _SOME, law=False)
+
+
+def _solving(config: Config) -> Iterator[Setting]:
+    exact = by_waves(config)
+    for accuracy in EXACT_ACCURACIES:
+        solved = changed(exact, {"tracing": {"preset": None, "accuracy": accuracy}})
+        # the law is one of rays
+        yield Setting(OF_WAVES, accuracy, solved, law=False)
 
 
 def _sampling(config: Config) -> Iterator[Setting]:

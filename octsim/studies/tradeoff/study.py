@@ -1,29 +1,36 @@
 """What accuracy costs: settings against a converged reference (`snakemake tradeoff`)."""
 
 from collections.abc import Callable, Iterable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.config.derive import by_accuracy, by_rays, changed, reference
+from octsim.config.derive import by_accuracy, by_rays, reference
 from octsim.config.models import Config, FocusLine
-from octsim.config.scheme import scheme_of
 from octsim.datasets.files import make
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
-from octsim.phase.slopes import phase_slopes
-from octsim.phase.transform import fourier_components
 from octsim.stages.focus_law import focus_law, sweep_foci
 from octsim.stages.focus_sweep import focus_sweep
 from octsim.stages.gaussian_fits import gaussian_fits
+from octsim.studies.tradeoff.errors import (
+    Errors,
+    MaxwellErrors,
+    ReferenceSweep,
+    errors_of,
+    intensity_errors,
+    maxwell,
+    maxwell_errors_of,
+    why_no_maxwell,
+)
 from octsim.studies.tradeoff.frontier import COUNTED, TARGETS, comparison, efficient
 from octsim.studies.tradeoff.measured_cost import MeasuredCost, apart, sweep_cost
 from octsim.studies.tradeoff.settings import (
-    CONVERGED_SAMPLES,
-    FINER,
     Setting,
+    is_of_the_trade,
+    is_of_waves,
     is_the_runs,
     preset_of,
     settings,
@@ -33,74 +40,9 @@ Array = NDArray[np.float64]
 _NO_LAW = FocusLine.model_construct(slope=np.nan, intercept=np.nan)
 
 
-class Errors(NamedTuple):
-    """How far one setting is from the converged reference."""
-
-    worst_intensity_error: float
-    """Largest over the diameters of max |I − I_ref| / max I_ref over k."""
-    median_intensity_error: float
-    """Median over the diameters of the same."""
-    beyond_accuracy: int
-    """Number of diameters where that is above the accuracy that was asked for."""
-    phase_slope_rms_error: float = np.nan
-    """Over the diameters, mrad/nm."""
-    phase_slope_largest_error: float = np.nan
-    """Over the diameters, mrad/nm."""
-
-
-def intensity_errors(intensity: Array, exact: Array) -> Array:
-    """Return max |I − I_ref| / max I_ref of each spectrum, (D, K) to (D,); NaN where it is dark."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        errors: Array = np.abs(intensity - exact).max(axis=1) / exact.max(axis=1)
-    return errors
-
-
-def strongest_slopes(config: Config, intensity: Array) -> Array:
-    """Return the phase slope of the strongest component (D,), mrad/nm, of spectra (D, K)."""
-    components = fourier_components(intensity, config.processing)
-    diameters = config.sweep.diameters.values()
-    return phase_slopes(diameters, np.abs(components), np.angle(components)).strongest
-
-
 def fitted_law(config: Config, threads: int, points: Points) -> xr.Dataset:
     """Return a config's focus law."""
     return focus_law(config, gaussian_fits(config, focus_sweep(config, threads, points)))
-
-
-class ReferenceSweep:
-    """Converged spectra and slopes of a run; each is made when it is first asked for."""
-
-    def __init__(self, config: Config, line: FocusLine, threads: int, points: Points) -> None:
-        self._config, self._line, self._threads, self._points = config, line, threads, points
-        self._spectra: dict[tuple[int, int], Array] = {}
-
-    def spectra(self, num: int, samples: int) -> Array:
-        """Return the spectra (D, K) of some number of diameters and of wavenumbers."""
-        if (num, samples) not in self._spectra:
-            config = reference(self._sampled(num, samples))
-            diameters = config.sweep.diameters.values()
-            self._spectra[num, samples] = Instrument(config, self._points).spectra(
-                diameters, self._line.at(diameters), self._threads
-            )
-        return self._spectra[num, samples]
-
-    def slopes(self, setting: Setting) -> Array:
-        """Return what a setting's slope would be, were the factor that it varies converged."""
-        num, samples = setting.config.sweep.diameters.num, setting.config.spectrum.samples
-        if setting.factor == "spectrum.samples":
-            samples = CONVERGED_SAMPLES
-        steps = 1
-        if setting.factor == "sweep.diameters.num":
-            finest = FINER * (self._config.sweep.diameters.num - 1)
-            steps, num = finest // (num - 1), finest + 1
-        converged = strongest_slopes(self._sampled(num, samples), self.spectra(num, samples))
-        return converged[::steps]
-
-    def _sampled(self, num: int, samples: int) -> Config:
-        return changed(
-            self._config,
-            {"sweep": {"diameters": {"num": num}}, "spectrum": {"samples": samples}},
-        )
 
 
 def tradeoff(
@@ -137,10 +79,12 @@ def tradeoff(
         Errors, costs, and whether it is efficient, of each setting; and how many times fewer
         segments light paths need than counted rays, for each target error.
     """
-    listed = list(settings(config) if chosen is None else chosen)
+    unsolved = why_no_maxwell(config)
+    listed = list(settings(config, waves=not unsolved) if chosen is None else chosen)
     points = points or Points()
     # compiled code goes to the processes with this one's memory
-    for least in (by_rays(config, 1), by_accuracy(config, 0.1)):
+    solved = () if unsolved else (maxwell(config, 0.1),)
+    for least in (by_rays(config, 1), by_accuracy(config, 0.1), *solved):
         start = config.sweep.diameters.start
         Instrument(least).spectrum(start, start / 2)
     converged = reference(config)
@@ -148,22 +92,32 @@ def tradeoff(
     sweep_foci(converged, law)  # says what is wrong with a law that does not serve
     focus = config.sweep.focus
     line = focus if isinstance(focus, FocusLine) else FocusLine.fitted(law)
-    exact = ReferenceSweep(config, line, threads, points)
+    rays = ReferenceSweep(config, line, threads, points)
+    waves = None if unsolved else ReferenceSweep(config, line, threads, points, maxwell)
     # before what is not timed, whose memory would be there to use again
     costs = [_measured(setting, line, prepare, separate) for setting in listed]
-    errors = [
-        _errors(setting, cost.intensity, exact) for setting, cost in zip(listed, costs, strict=True)
-    ]
+    errors, from_maxwell = [], []
+    for setting, cost in zip(listed, costs, strict=True):
+        own = waves if waves is not None and is_of_waves(setting.config) else rays
+        errors.append(errors_of(setting, cost.intensity, own))
+        from_maxwell.append(maxwell_errors_of(setting, cost.intensity, waves))
     laws = [
         FocusLine.fitted(fitted_law(setting.config, threads, points)) if setting.law else _NO_LAW
         for setting in listed
     ]
     variables = {
-        **_columns(listed, costs, errors),
+        **_columns(listed, costs, errors, from_maxwell),
         **_law_errors(laws, FocusLine.fitted(law), config),
         **_changes(listed, costs),
     }
-    return _dataset(config, listed, variables)
+    return _dataset(config, listed, variables).assign_attrs(maxwell=unsolved or _maxwell_is(config))
+
+
+def _maxwell_is(config: Config) -> str:
+    """Say what errors from Maxwell are measured from."""
+    exact = maxwell(config)
+    pupil = exact.objective.pupil or "the mode of a fibre, of 5 um mode-field diameter"
+    return f"scheme {exact.tracing.scheme} at {exact.tracing.accuracy:g}, pupil: {pupil}"
 
 
 def _measured(
@@ -175,23 +129,11 @@ def _measured(
     return apart(prepare, sweep_cost, *swept) if separate else sweep_cost(*swept)
 
 
-def _errors(setting: Setting, intensity: Array, exact: ReferenceSweep) -> Errors:
-    config = setting.config
-    spectra = exact.spectra(config.sweep.diameters.num, config.spectrum.samples)
-    off = intensity_errors(intensity, spectra[:: setting.every])
-    asked = config.tracing.accuracy if scheme_of(config).controls_error else np.inf
-    errors = Errors(float(off.max()), float(np.median(off)), int((off > asked).sum()))
-    if setting.every > 1:
-        return errors
-    slope_off = strongest_slopes(config, intensity) - exact.slopes(setting)
-    return errors._replace(
-        phase_slope_rms_error=float(np.sqrt(np.mean(slope_off**2))),
-        phase_slope_largest_error=float(np.abs(slope_off).max()),
-    )
-
-
 def _columns(
-    listed: list[Setting], costs: list[MeasuredCost], errors: list[Errors]
+    listed: list[Setting],
+    costs: list[MeasuredCost],
+    errors: list[Errors],
+    from_maxwell: list[MaxwellErrors],
 ) -> dict[str, Any]:
     # of as many diameters as the sweep has, where only some were traced
     whole = np.array(
@@ -200,9 +142,14 @@ def _columns(
             for setting, cost in zip(listed, costs, strict=True)
         ]
     )
+    waves = [is_of_waves(setting.config) for setting in listed]
     column = {
         **{name: np.array([getattr(error, name) for error in errors]) for name in Errors._fields},
-        "segments_per_diameter": np.array([cost.segments for cost in costs]),
+        **{
+            name: np.array([getattr(error, name) for error in from_maxwell])
+            for name in MaxwellErrors._fields
+        },
+        "segments_per_diameter": np.where(waves, np.nan, [cost.segments for cost in costs]),
         "cpu_seconds": whole * [cost.cpu_seconds for cost in costs],
         "peak_memory": np.array([cost.peak_memory for cost in costs]),
         "unreached": np.array([cost.unreached for cost in costs]),
@@ -245,14 +192,22 @@ def _dataset(config: Config, listed: list[Setting], variables: dict[str, Any]) -
     column = {name: values for name, (_, values) in variables.items()}
     segments, error = column["segments_per_diameter"], column["worst_intensity_error"]
     # points of other diameters and wavenumbers, and the reference, are not of this trade
-    traced = np.array([s.factor == "run" or s.factor.startswith("tracing.") for s in listed])
+    traced = np.array([is_of_the_trade(s) for s in listed])
+    # an error from rays' own limit and one from waves' are not of one trade
+    by_rays = traced & np.array([not is_of_waves(s.config) for s in listed])
     own = np.array([is_the_runs(setting, config) for setting in listed])
     # the sweep itself, and not the same setting as a point of another factor
     first = np.flatnonzero(own)[:1]
     flags = {
-        "frontier": efficient(segments, np.where(traced, error, np.nan)),
+        "frontier": efficient(segments, np.where(by_rays, error, np.nan)),
         "phase_slope_frontier": efficient(
-            column["cpu_seconds"], np.where(traced, column["phase_slope_rms_error"], np.nan)
+            column["cpu_seconds"], np.where(by_rays, column["phase_slope_rms_error"], np.nan)
+        ),
+        "maxwell_frontier": efficient(
+            column["cpu_seconds"], column["maxwell_spectrum_worst_error"]
+        ),
+        "maxwell_slope_frontier": efficient(
+            column["cpu_seconds"], column["maxwell_slope_rms_error"]
         ),
         "default": np.isin(np.arange(value.size), first),
     }
@@ -281,7 +236,8 @@ def summary(dataset: xr.Dataset) -> str:
     named = dataset.isel(setting=(dataset["preset"] != "") | (dataset["default"] == 1))
     places = [
         f"{str(one['preset'].item()) or 'this run'} {one['worst_intensity_error'].item():.1e} "
-        f"with {one['segments_per_diameter'].item():.3g} segments a diameter"
+        f"from its limit, {one['maxwell_spectrum_worst_error'].item():.1e} from Maxwell, "
+        f"in {one['cpu_seconds'].item():.3g} s"
         for one in (named.isel(setting=i) for i in range(named.sizes["setting"]))
     ]
-    return f"tradeoff: error of the intensity {'; '.join(places)}"
+    return f"tradeoff: error of the intensity {'; '.join(places)} ({dataset.attrs['maxwell']})"
