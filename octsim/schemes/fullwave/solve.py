@@ -163,7 +163,7 @@ def _left_out(series: NDArray[np.float64]) -> float:
     The last ones, and as many times more as they fall slowly: by resonances of a large cylinder.
     """
     last, before = (series[part].sum(axis=0) for part in (_LAST, _BEFORE))
-    fall = np.clip(last / np.maximum(before, last), 1 / 3, 0.8)
+    fall = np.clip(last / np.maximum(before, last), 1 / 3, 0.95)
     return float((2 * last * fall / (1 - fall)).max())
 
 

@@ -167,7 +167,13 @@ EXTREMES = {
 }
 
 
-@pytest.mark.parametrize("name", EXTREMES)
+SLOW = "high index", "aperture of water"
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=pytest.mark.trial if name in SLOW else ()) for name in EXTREMES],
+)
 @pytest.mark.filterwarnings("error")
 def test_extremes_are_reached_or_say_so(name: str) -> None:
     of_scene, other = EXTREMES[name]
