@@ -136,7 +136,9 @@ def test_figure_12_has_maxwell_s_points_where_there_are_some(
         with look():
             lines = figure_12(slopes).axes[0].lines
         return [
-            np.asarray(line.get_xdata()).size for line in lines if line.get_label() == "Maxwell's equations"
+            np.asarray(line.get_xdata()).size
+            for line in lines
+            if line.get_label() == "Maxwell's equations"
         ]
 
     alone, beside = made
