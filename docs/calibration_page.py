@@ -252,7 +252,8 @@ marked as missing or is out of the valid range is missing; elsewhere such number
 **Errors**: without `phase_error` the scatter at rest is the error of every sample, widened to the
 interval of Student's t that covers 68.3 % (1.32 times for 3 samples at rest, 1.03 for 20). A
 scatter below Δ/√12, where Δ is the smallest step of the recorder, says nothing: the error of
-rounding is stated, or NaN where no step is seen. `error_status` says which it is.
+rounding is stated, or NaN where no step is seen. `error_status` says which it is. A
+`phase_error` that is 0, or five times off the scatter at rest, as of another unit, is asked about.
 
 **Outliers**: one or two samples that are more than five standard deviations from the median of
 themselves and their four neighbours (a Hampel filter) are named in a warning, and never are the

@@ -29,14 +29,20 @@ def standing(path: Path) -> Path:
 
 
 def require_folder(path: Path) -> None:
-    """Check that a folder is there, or can be made, can be written in, and has room.
+    """Check that a folder is there or can be made, and has room and a name that netCDF takes.
 
     Raises
     ------
     FileError
         If it can't; nothing is made.
     """
-    there = standing(path)
+    there, whole_path = standing(path), os.fsencode(path.absolute())
+    if b"\\" in whole_path or not _is_utf_8(whole_path):
+        raise FileError(
+            f"{path}: can't hold netCDF files, as the name of a folder above it, "
+            f"{path.absolute().parent}, has a backslash or a character that is not UTF-8; rename "
+            "that, or run elsewhere"
+        )
     if not there.is_dir():
         raise FileError(f"{path}: can't be a folder, as {there.name} is a file; move that away")
     if not os.access(there, os.W_OK | os.X_OK):
@@ -47,6 +53,14 @@ def require_folder(path: Path) -> None:
             f"{path}: the disk is full ({free / 1e6:.0f} MB free, {SPACE / 1e6:.0f} MB needed); "
             "make room and run again"
         )
+
+
+def _is_utf_8(name: bytes) -> bool:
+    try:
+        name.decode("utf-8")
+    except UnicodeDecodeError:
+        return False
+    return True
 
 
 def require_empty(folder: Path) -> None:

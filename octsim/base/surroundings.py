@@ -16,6 +16,14 @@ from octsim.base.provenance import PACKAGE
 
 _KEPT = ("PYTHONDONTWRITEBYTECODE", "PYTHONPYCACHEPREFIX", "PYTHONUNBUFFERED")
 """Of Python's variables: where bytecode goes, and when a line is shown, changes no result."""
+_OF_NUMBA = (
+    "NUMBA_CACHE_DIR",
+    "NUMBA_CPU_NAME",
+    "NUMBA_CPU_FEATURES",
+    "NUMBA_DISABLE_JIT",
+    "NUMBA_OPT",
+)
+"""Of numba's variables: those that kept code is told apart by, and where it lies."""
 _OWN = {
     "MATPLOTLIBRC": os.devnull,
     "MPLBACKEND": "agg",
@@ -66,6 +74,6 @@ def settled(environment: Mapping[str, str]) -> dict[str, str]:
     kept = {
         name: value
         for name, value in environment.items()
-        if name in _KEPT or not name.startswith("PYTHON")
+        if name in _KEPT + _OF_NUMBA or not name.startswith(("PYTHON", "NUMBA_"))
     }
     return kept | _OWN | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}

@@ -9,13 +9,9 @@ from octsim.base.errors import ConfigError
 from octsim.config.checks import plain_remarks
 from octsim.config.derive import bears_on, config_at
 from octsim.config.fields import as_text as as_text
+from octsim.config.models import FIXED as FIXED
 from octsim.config.models import Config
 
-FIXED = (
-    "run", "calibration", "expansion", "action_potential", "design", "grid", "archive", "cache",
-    "budget", "scatter",
-)  # fmt: skip
-"""Sections that a run has once: what no stage over the grid depends on."""
 _NUMBERS = re.compile(r"[-+]?[0-9][0-9.e+-]*")
 
 

@@ -9,7 +9,7 @@ from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
 from octsim.config.archive import Creator
-from octsim.config.models import Config, FocusLine, Grid
+from octsim.config.models import FIXED, Config, FocusLine, Grid
 from octsim.config.scene import Layer, Shell
 from octsim.config.units import ANGLE, LENGTH
 
@@ -82,7 +82,7 @@ def explain(error: ErrorDetails) -> str:
     path = ".".join(place)
     entry = _of_any_entry(path)
     listed = isinstance(error["input"], list | tuple) and error["type"] != "model_type"
-    varies = listed and place[0] not in ("archive", "run")  # a run has one
+    varies = listed and place[0] not in FIXED  # of which a run has one
     key = next((name for name in (place[-1], path) if name in set(known_keys())), None)
     if varies and key and entry not in _LISTS:
         return (
@@ -97,8 +97,11 @@ def explain(error: ErrorDetails) -> str:
         return f"{path}: missing; it has no default, so give it a value"
     message = error["msg"].removeprefix("Value error, ").replace("Input should", "it should")
     if path == "run":
-        message = "it should be a plain name as text: letters, digits, '.', '_' and '-', no path"
-        if not isinstance(error["input"], str):
+        message = (
+            "it should be a plain name as text: letters, digits, '.', '_' and '-', no path, 100 at "
+            "most"
+        )
+        if not isinstance(error["input"], str | list | dict):
             # snakemake reads the command line's 2024_06_01 as a number, quoted or not
             message += (
                 "; put it in quotes in a config file, or write --config 'run=!!str NAME' on the "

@@ -215,6 +215,13 @@ class Scatter(Section):
 _NO_RESULT = ("archive", "cache", "scatter")
 
 
+FIXED = (
+    "run", "calibration", "expansion", "action_potential", "design", "grid", "archive", "cache",
+    "budget", "scatter",
+)  # fmt: skip
+"""Sections that a run has once: what no stage over the grid depends on."""
+
+
 class Config(Section):
     """A whole run. Every value has the thesis's as its default."""
 

@@ -5,8 +5,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from octsim.config.models import FocusLine
-from octsim.figures.style import BLACK, BLUE, VERMILION, label, title
-from octsim.stages.centres import CentreUse
+from octsim.figures.style import BLACK, BLUE, VERMILION, label, tell, title
+from octsim.stages.centres import CentreUse, doubts
 from octsim.stages.focus_law import LawScheme
 
 
@@ -51,4 +51,7 @@ def figure_7(fits: xr.Dataset, law: xr.Dataset) -> Figure:
     by = f" by scheme {LawScheme(int(law['law_scheme'])).name}" if own is law else ""
     foci.set_title(title(law, f"Focus law{by}{lack}"))
     foci.legend()
+    if not (np.isfinite(centre) | np.isfinite(law["brightest_focus"])).any():
+        foci.set_xlim(diameter.values[0], diameter.values[-1])  # nothing is there that sets it
+    tell(figure, doubts(law))
     return figure

@@ -3,7 +3,8 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from octsim.figures.style import BLUE, ORANGE, label, title, unit_of_intensity
+from octsim.figures.style import BLUE, ORANGE, label, tell, title, unit_of_intensity
+from octsim.phase.fringe_status import FringeStatus
 
 
 def figure_6(scan: xr.Dataset) -> Figure:
@@ -15,8 +16,10 @@ def figure_6(scan: xr.Dataset) -> Figure:
     rays.plot(focus, scan["rays_detected"], color=ORANGE)
     rays.set_yscale("symlog", linthresh=1)
     rays.set_ylabel(label(scan["rays_detected"], "rays detected"))
-    light.semilogy(focus, scan["intensity"], color=BLUE)
+    light.semilogy(focus, scan["intensity"].where(scan["intensity"] > 0), color=BLUE)
     light.set_ylabel(label(scan["intensity"], f"mean intensity\n(1 = {unit_of_intensity(scan)})"))
     light.set_xlabel(label(focus))
     rays.set_title(title(scan, f"Focus scan, diameter {float(scan['diameter']):g} µm"))
+    if not (scan["intensity"] > 0).any():
+        tell(figure, [f"no light at any focus: {FringeStatus.NO_LIGHT.remedy}"])
     return figure

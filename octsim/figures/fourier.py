@@ -37,6 +37,7 @@ def figure_9(fourier: xr.Dataset) -> Figure:
         return depth / step
 
     depth = axes.secondary_xaxis("top", functions=(to_depth, to_component))
+    axes.yaxis.get_offset_text().set_x(-0.12)  # a power of ten, left of the depths
     depth.set_xlabel(label(shown["depth"], "optical depth"))
     axes.set_title(title(fourier, f"Fourier transform, diameter {float(shown['diameter']):.4g} µm"))
     axes.legend()

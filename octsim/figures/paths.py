@@ -3,7 +3,19 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from octsim.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, label, title
+from octsim.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILION,
+    label,
+    tell,
+    title,
+)
+from octsim.phase.fringe_status import FringeStatus
 
 STRONGEST = 8
 """Paths that are drawn."""
@@ -40,4 +52,6 @@ def figure_paths(paths: xr.Dataset) -> Figure:
     panels[0].set_title(title(paths, "Light paths"))
     handles, names = panels[0].get_legend_handles_labels()
     figure.legend(handles, names, loc="outside lower center", ncols=2, fontsize=8)
+    if not (paths["field_amplitude"] > 0).any():
+        tell(figure, [f"no light on any path: {FringeStatus.NO_LIGHT.remedy}"])
     return figure

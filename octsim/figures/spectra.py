@@ -5,8 +5,10 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from octsim.config.processing import Processing
-from octsim.figures.style import BLUE, GREEN, SKY, label, title
+from octsim.figures.style import BLUE, GREEN, SKY, label, tell, title
+from octsim.phase.fringe_status import FringeStatus, doubts_of
 from octsim.phase.transform import centred_by, windowed
+from octsim.stages.spectra import doubts
 
 DIAMETER = 1.4
 """Diameter that the thesis shows, µm; the nearest of the sweep is drawn."""
@@ -33,4 +35,7 @@ def figure_8(spectra: xr.Dataset, processing: Processing) -> Figure:
     axes.set_ylabel("Intensity (largest = 1)")
     axes.set_title(title(spectra, f"Spectrum, diameter {float(spectrum['diameter']):.4g} µm"))
     figure.legend(loc="outside lower center", ncols=3)
+    dark = (spectra["intensity"] == 0).all("wavenumber").values
+    status = np.where(dark, FringeStatus.NO_LIGHT, FringeStatus.VISIBLE)
+    tell(figure, [*doubts_of(status, "diameters"), *doubts(spectra)])
     return figure

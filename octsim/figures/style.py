@@ -2,6 +2,7 @@
 
 import json
 import textwrap
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
@@ -77,10 +78,15 @@ def tell_doubts(figure: Figure, dataset: xr.Dataset) -> None:
     """Write below a figure which spectra have no fringe, or a doubtful one, and what to do."""
     if "fringe_status" not in dataset:
         return
-    said = doubts_of(dataset["fringe_status"].values, "diameters")
+    tell(figure, doubts_of(dataset["fringe_status"].values, "diameters"))
+
+
+def tell(figure: Figure, said: Sequence[str]) -> None:
+    """Write lines below a figure, or above one with a legend there, if there are some."""
     if said:
         lines = [line for one in said for line in textwrap.wrap(one, _LETTERS)]
-        figure.supxlabel("\n".join(lines), color=VERMILION, fontsize=7)
+        write = figure.suptitle if figure.legends else figure.supxlabel
+        write("\n".join(lines), color=VERMILION, fontsize=7)
 
 
 def save(figure: Figure, path: Path) -> None:

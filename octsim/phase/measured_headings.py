@@ -43,10 +43,13 @@ _NAMES = {
 _BRACKETS = re.compile(r"[(\[{]\s*(.*?)\s*[)\]}]")
 _ERROR = re.compile(
     r"(?:\b|(?<=phase)|(?<=phi)|(?<=φ))(?:errs?|errors?|std|stderr|stdev|stddev|sd|se|"
-    r"sem|sigma|σ|unc|uncert|precision|jitter|ci ?\d\d|"
-    r"uncertainty|uncertainties|deviation|dev|rms|variance|var|noise)(?:\b|(?=phase|phi|φ))"
+    r"sem|sigma|σ|unc|uncert|precision|jitter|ci ?\d\d|tolerance|tol|accuracy|spread|"
+    r"fehler|unsicherheit|erreur|incertitude|"
+    r"uncertainty|uncertainties|deviation|dev|rmse?|variance|var|noise)(?:\b|(?=phase|phi|φ))"
 )
 _PHASE = re.compile(r"phase|phi|φ|\bm?rad\b|deg|°")
+_OF_PHASE = re.compile(r"(?:d|delta|δ|e|u|s|σ)[\W_]*(?:phase|phi|φ)\W*")
+"""As formulas name the error of a phase: ``dphi``, ``u(phase)``."""
 _ALIKE = 0.8
 """Likeness of a name and a known one, from which it is taken for one misspelt."""
 
@@ -183,16 +186,7 @@ def _proposed(name: str, meant: str = "", others: Sequence[str] = ()) -> str:
 _SHORT = {
     "time": ("t", "zeit"),
     "phase": ("phi", "φ", "ph"),
-    "phase_error": (
-        "phaseerr",
-        "dphase",
-        "dphi",
-        "dφ",
-        "δφ",
-        "σφ",
-        "δphase",
-        "delta phase",
-    ),
+    "phase_error": ("phaseerr",),
 }
 
 
@@ -213,6 +207,8 @@ def _may_be(text: str, name: str) -> bool:
         return True
     if name != "phase_error":
         return (plain.startswith(name) or name in plain.split()) and not of_errors(text)
+    if _OF_PHASE.fullmatch(plain) or _OF_PHASE.fullmatch(text.casefold()):
+        return True
     alone = not _ERROR.sub("", plain).replace("standard", "").strip()
     return of_errors(text) and (alone or _PHASE.search(text.casefold()) is not None)
 

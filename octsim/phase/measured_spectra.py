@@ -105,7 +105,7 @@ def _problem(headings: Sequence[str]) -> str | None:
     axis, *spectra = headings
     named, first = [text for text in spectra if text], parse(axis)
     if first is None or first.name not in AXES or not named:
-        return f"the header is {','.join(headings)!r}; {_FORM}"
+        return f"the header is {shown(','.join(headings))}; {_FORM}"
     others = [text for text in named if parse(text) or of_errors(text)]
     if others:
         return f"the column {others[0]!r} is of no spectrum, and would be read as one; leave it out"

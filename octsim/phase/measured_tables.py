@@ -170,7 +170,7 @@ def numbers(table: Table, place: int, name: str) -> Array:
         try:
             found[sample] = float(cell if "_" not in cell else "none") if cell else np.nan
         except ValueError:
-            remedy = "give a number, or nothing where a phase is missing"
+            remedy = "give a number, or leave the row out"
             if "," in cell:
                 remedy = "write a decimal point, not a comma, and nothing between thousands"
             elif "#" in cell:

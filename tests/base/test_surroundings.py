@@ -82,3 +82,10 @@ def test_a_matplotlibrc_that_is_no_text_is_one_line(tmp_path: Path) -> None:
     code = "import octsim.base.errors\ntry: import octsim.figures.style\n"
     code += "except octsim.base.errors.OctsimError as error: print(error)"
     assert "matplotlibrc: is no text (" in said(code, tmp_path)
+
+
+def test_threads_and_switches_of_numba_are_those_of_others() -> None:
+    theirs = {"NUMBA_NUM_THREADS": "0", "NUMBA_ENABLE_AVX": "0", "NUMBA_BOUNDSCHECK": "1"}
+    ours = {"NUMBA_CACHE_DIR": "/caches", "NUMBA_CPU_NAME": "x86-64", "NUMBA_OPT": "1"}
+    found = settled(theirs | ours)
+    assert {name: found.get(name) for name in theirs | ours} == dict.fromkeys(theirs) | ours

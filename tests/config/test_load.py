@@ -98,6 +98,8 @@ BAD: list[tuple[dict[Any, Any], str]] = [
     ({"sweep": {"focus": {"slope": 0, "intercept": "1 mm"}}}, "and sweep.focus asks for one at 1000.0 um"),
     ({"run": "../elsewhere"}, "run: '../elsewhere' given; it should be a plain name as text"),
     ({"run": ".hidden"}, "run: '.hidden' given; it should be a plain name as text"),
+    ({"run": "x" * 101}, "' given; it should be a plain name as text: letters, digits, '.', '_' and '-', no path, 100 at most"),
+    ({"expansion": {"diameter": ["1 um", "2 um"]}}, "expansion.diameter: ['1 um', '2 um'] given; not a length"),
     ({"run": ["a"]}, "run: ['a'] given; it should be a plain name as text"),
     ({"run": ""}, "run: '' given; it should be a plain name as text"),
     ({"run": 20240601}, "put it in quotes in a config file, or write --config 'run=!!str NAME' on the command line"),

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from made_runs import WHOLE
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 
 import octsim
@@ -15,6 +16,8 @@ from octsim.config.processing import Processing
 from octsim.datasets.gallery import all_run_figures
 from octsim.figures.draw import figure_of
 from octsim.figures.style import component_colour, look, save
+from octsim.stages.centres import CentreUse
+from octsim.stages.gaussian_fits import FitStatus
 
 FIGURES = all_run_figures()
 GRID = {"processing.window": ["hann", "hamming"], "processing.centre": ["mean", "midpoint"]}
@@ -130,3 +133,41 @@ LABELS = {
 def test_components_differ_in_lightness_too() -> None:
     light = [np.dot(to_rgb(component_colour(c)), (0.2126, 0.7152, 0.0722)) for c in (1, 2)]
     assert abs(light[0] - light[1]) > 0.2
+
+
+def test_figures_without_light_say_so_and_what_to_do(
+    stages: dict[str, xr.Dataset], tmp_path: Path
+) -> None:
+    """No panel is empty without a word, and no word is written over a legend."""
+    dark = dict(stages)
+    for name, variable in (
+        ("focus_scan", "intensity"), ("spectra", "intensity"), ("paths", "field_amplitude"),
+    ):  # fmt: skip
+        dark[name] = stages[name].assign({variable: 0 * stages[name][variable]})
+    for name in ("figure_6", "figure_8", "paths"):
+        with look():
+            figure = figure_of(FIGURES[name], dark, Processing())
+            FigureCanvasAgg(figure).print_figure(tmp_path / "f.png")
+        (written,) = [text for text in figure.texts if "light" in text.get_text()]
+        assert "media whose indices" in written.get_text().replace("\n", " ")
+        for legend in figure.legends:
+            assert not written.get_window_extent().overlaps(legend.get_window_extent())
+
+
+def test_diameters_without_a_peak_are_named_below_the_law(stages: dict[str, xr.Dataset]) -> None:
+    law, fits = (stages[name].copy(deep=True) for name in ("focus_law", "gaussian_fits"))
+    for name in ("slope", "intercept"):
+        law[name].values[...] = np.nan
+    law["centre_use"].values[:] = CentreUse.NO_CENTRE
+    law["status"].values[:] = FitStatus.NO_LIGHT
+    for name in ("brightest_focus", "centre"):
+        (law if name in law else fits)[name].values[:] = np.nan
+    without = stages | {"focus_law": law, "gaussian_fits": fits}
+    figure = figure_of(FIGURES["figure_7"], without, Processing())
+    count, diameter = law.sizes["diameter"], law["diameter"].values
+    (written,) = [text.get_text().replace("\n", " ") for text in figure.texts]
+    assert (
+        f"no Gaussian fits at {count} of {count} diameters: {diameter[0]:.4g} um (no_light)"
+        in written
+    )
+    assert figure.axes[0].get_xlim() == (diameter[0], diameter[-1])

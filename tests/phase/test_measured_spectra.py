@@ -118,6 +118,7 @@ def test_even_samples_are_left_as_they_are() -> None:
         ("", "empty; write a first column headed"),
         ("lambda,i\n1,2\n", "the header is 'lambda,i'; write a first column headed"),
         ("wavelength (nm)\n1\n", "the header is 'wavelength"),
+        (f"spectrum{99 * ',650'}\n", f"the header is 'spectrum{12 * ',650'},...'; write"),
         ("wavelength (kg),i\n1,2\n", "wavelength has the unit 'kg'; give one such as nm"),
         ("wavenumber (um),i\n1,2\n", "wavenumber has the unit 'um'; give one such as 1/um"),
         ("wavelength (nm),i\n1,2\n2,x\n", "row 3: i of sample 2 is 'x'; give a number"),

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -218,9 +219,37 @@ def test_a_rest_without_scatter_is_asked_about(table: xr.Dataset, tmp_path: Path
     none = Series(LONG, phases(PULSE) + QUIET, np.zeros(200))
     with pytest.warns(OctsimWarning, match="phase_error is 0 throughout"):
         series_expansion(Config(), none, table)
+    some = none._replace(phase_error=np.where(np.arange(200) == 3, 0.0, QUIET[:60].std()))
+    with pytest.warns(OctsimWarning, match="phase_error is 0 at 1 of 200"):
+        series_expansion(Config(), some, table)
     with look():
         for number, one in enumerate((found, still)):
             save(expansion_figure(one), tmp_path / f"{number}.png")
+
+
+@pytest.mark.parametrize("factor", [1e-3, 0.5, 2.0, 1e3])
+def test_a_phase_error_of_another_unit_than_the_phase_is_asked_about(
+    factor: float, table: xr.Dataset
+) -> None:
+    series = Series(LONG, phases(PULSE) + QUIET, np.full(200, factor * QUIET[:20].std()))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        series_expansion(Config(), series, table)
+    said = [str(one.message) for one in caught if "see that its unit is right" in str(one.message)]
+    assert len(said) == (factor in (1e-3, 1e3))
+    # too few samples scatter by anything
+    few = load_config({"expansion": {"rest": 4}})
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        series_expansion(few, series, table)
+    assert not [one for one in caught if "see that its unit" in str(one.message)]
+
+
+def test_an_outlier_at_rest_is_told_as_one_that_moves_all(table: xr.Dataset) -> None:
+    phase = phases(PULSE) + QUIET
+    phase[5] += 0.3
+    with pytest.warns(OctsimWarning, match="and 1 at rest move the level of all samples"):
+        series_expansion(Config(), Series(LONG, phase), table)
 
 
 def test_few_samples_at_rest_widen_the_error_as_student_s_t_does(table: xr.Dataset) -> None:

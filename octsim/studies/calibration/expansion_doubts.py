@@ -15,6 +15,10 @@ from octsim.phase.rest_error import ErrorStatus, stated_change, student_factor
 Array = NDArray[np.float64]
 _NAMED = 3
 """Outliers that are named; of more, the number."""
+_APART = 5.0
+"""How many times a phase_error is off the scatter at rest, from which it is asked about."""
+_ENOUGH = 8
+"""Samples whose scatter tells that."""
 _SURE = 4.0
 """Standard deviations from which a drift at rest is said to be one."""
 
@@ -50,7 +54,8 @@ def doubts(found: xr.Dataset) -> list[str]:
     """Say, a line each, what of an expansion may not be as it seems, and what to do.
 
     These are outliers, an error at rest that is only the recorder's rounding or not known at all,
-    and a drift at rest that is not subtracted.
+    one that was given and is 0 or far from the scatter at rest, and a drift at rest that is not
+    subtracted.
     """
     said = []
     settings = ExpansionConfig.model_validate(json.loads(found.attrs["config"])["expansion"])
@@ -62,6 +67,9 @@ def doubts(found: xr.Dataset) -> list[str]:
             if settings.outliers == "drop"
             else "not taken for the largest change; expansion.outliers: drop leaves them out"
         )
+        at_rest = int(alone[: settings.rest].sum())
+        if at_rest and settings.outliers != "drop":
+            remedy += f", and {at_rest} at rest move the level of all samples and widen the error"
         said.append(
             f"outliers, more than {THRESHOLD:g} standard deviations from their neighbours: "
             f"{named_samples(alone, series.time, change)}; {remedy}"
@@ -79,16 +87,39 @@ def doubts(found: xr.Dataset) -> list[str]:
             "the samples at rest all have one phase, and the recorder's steps are not seen: "
             "statistical_error is not known, and NaN; give phase_error, or samples that scatter"
         )
-    if series.phase_error is not None and not series.phase_error.any():
-        said.append(
-            "phase_error is 0 throughout, and statistical_error with it; give the phase's error, "
-            "or leave the column out to have the scatter at rest instead"
-        )
     if settings.outliers == "drop":
         series = series._replace(phase=np.where(alone, np.nan, series.phase))
+    said += _given_errors(series, settings)
     if settings.drift == "none":
         said += _drifting(series, settings.rest, float(found["fixed_focus_phase_slope"]))
     return said
+
+
+def _given_errors(series: Series, settings: ExpansionConfig) -> list[str]:
+    """Say that a phase_error is 0, or is not of the size of what the phases at rest scatter by."""
+    if series.phase_error is None:
+        return []
+    there = np.isfinite(series.phase)
+    error = series.phase_error[there]
+    remedy = "or leave the column out to have the scatter at rest instead"
+    if not error.all():
+        share = "throughout" if not error.any() else f"at {(error == 0).sum()} of {error.size}"
+        return [f"phase_error is 0 {share}, and is no error; give the phase's error, {remedy}"]
+    rest = there[: settings.rest].sum()
+    if rest < _ENOUGH:
+        return []
+    alone = series._replace(phase_error=None)
+    drifts = settings.drift != "none"
+    scatter = stated_change(alone, settings.rest, drifts, settings.references)[0].scatter
+    stated = float(
+        np.sqrt((series.phase_error[: settings.rest][there[: settings.rest]] ** 2).mean())
+    )
+    if stated / _APART <= scatter <= stated * _APART:
+        return []
+    return [
+        f"the samples at rest scatter by {1e3 * scatter:.3g} mrad, where phase_error is "
+        f"{1e3 * stated:.3g} mrad; see that its unit is right, {remedy}"
+    ]
 
 
 def _drifting(series: Series, rest: int, slope: float) -> list[str]:
