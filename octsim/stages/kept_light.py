@@ -46,8 +46,8 @@ def stored_by_kind(layout: Layout, *datasets: xr.Dataset | None) -> dict[str, St
         dataset, name = given[kind], _KEPT_IN[kind]
         if dataset is None:
             raise OctsimError(
-                f"{name}: not given, but tracing.scheme: {layout.config.tracing.scheme} keeps its "
-                f"light there; make it by octsim.{name}(config, law) and pass it as {name}"
+                f"{name}: not given, which holds the light of a scheme of {kind}; make it by "
+                f"octsim.{name}(config, law) and pass it as {name}"
             )
         stored[kind] = Stored(dataset, name, layout.config, layout)
     return stored

@@ -15,7 +15,7 @@ def test_a_file_holds_what_memory_does(name: str, tmp_path: Path) -> None:
     config, held = run_of_grid(name)
     streams = {
         "detections": octsim.detections.stream(config, held["focus_law"]),
-        "spectra": octsim.spectra.stream(config, held["detections"]),
+        "spectra": octsim.spectra.stream(config, held["detections"], fields=held.get("fields")),
         "fourier": octsim.fourier.stream(config, held["spectra"]),
     }
     for stage, stream in streams.items():
