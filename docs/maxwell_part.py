@@ -64,7 +64,8 @@ faster and give very usable results. That a field takes hours is true of a grid 
 in partial waves, and the sweep takes {seconds} s of processor time, {slower} times that of 3000
 rays. How usable rays are is what they are used for: the shape of the spectrum stays {shape} % from
 Maxwell's (median over the diameters) however well each path is integrated, and {thesis_shape} %
-with 3000 rays, as no ray has the pupil's diffraction. The phase slope is off by {bias} mrad/nm on
-average, and by {rms} mrad/nm rms. More rays, or a finer accuracy of paths, bring no truth beyond
-that.
+with 3000 rays: no ray has the pupil's diffraction, and the thesis's instrument, a uniform pupil
+and a cut by position, is not the fibre's mode that waves are weighed with unless the config says
+otherwise. The phase slope is off by {bias} mrad/nm on average, and by {rms} mrad/nm rms. More rays,
+or a finer accuracy of paths, bring no truth beyond that.
 """
