@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from octsim.config.grid import Axis, Combination, combinations
 from octsim.config.models import Config
 from octsim.datasets.axes import axis_coordinates, axis_name
-from octsim.datasets.keys import keys_behind, stage_axes
+from octsim.datasets.catalog import CATALOG
+from octsim.datasets.keys import keys_behind, light_of, stage_axes
 from octsim.datasets.variables import meaning
 
 Coordinate = tuple[str, NDArray[Any]]
@@ -104,6 +105,12 @@ class Layout:
         """Length of each of the whole dataset's dimensions, but for ragged ones."""
         own = {self.dimension(name): max(sizes) for name, sizes in self._lengths.items()}
         return dict(zip(self.grid_dimensions, self.grid_shape, strict=True)) | own
+
+    @cached_property
+    def lacks_some(self) -> bool:
+        """Whether some combinations have no values, as their light is of another kind."""
+        row = CATALOG.get(self.stage)
+        return row is not None and bool(row.light) and len(light_of(self.config)) > 1
 
     def is_ragged(self, dimensions: Iterable[str]) -> bool:
         """Return whether a variable along these has its parts one after the other, in no shape."""

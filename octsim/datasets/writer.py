@@ -62,7 +62,8 @@ class _File:
         if beside and name not in self._coordinates:
             attributes = dict(attributes) | {"coordinates": " ".join(beside)}
         variable.setncatts(attributes)
-        if not ragged and any(d in self._layout.padded for d in dimensions):
+        partly = self._layout.lacks_some and name not in self._coordinates
+        if not ragged and (partly or any(d in self._layout.padded for d in dimensions)):
             # not by the file's own fill value, which would make readers turn whole numbers to NaN
             variable[:] = filling(dtype)
 
