@@ -21,6 +21,7 @@ ADDED = frozenset(
     {
         "phase_status", "fringe_status", "fringe_visibility", "centre_use", "brightest_focus",
         "relative_residual", "error_status", "rest_scatter", "smallest_step", "drift",
+        "exact_phase_slope", "exact_status", "law_scheme",
     }
 )  # fmt: skip
 """Variables that older files lack, and that say of others where they hold nothing or how good they
