@@ -151,12 +151,12 @@ EXTREMES = {
     "1 nm": ({"diameter": 1e-3}, {}),
     "weak": ({"n_neuron": 1.33 + 1e-12}, {}),
     "low index": ({"n_neuron": 1.2}, {"aperture": 1.25}),
-    "high index": ({"n_neuron": 2.2}, {}),
+    "high index": ({"n_neuron": 2.2}, {"accuracy": 1e-2}),
     "no gap": ({"gap": 0.0}, {}),
     "gap 1 mm": ({"gap": 1e3}, {}),
     "small aperture": ({}, {"aperture": 1e-3}),
     "aperture 1.3": ({}, {"aperture": 1.3}),
-    "aperture of water": ({}, {"aperture": 1.3299}),
+    "aperture of water": ({}, {"aperture": 1.3299, "accuracy": 1e-2}),
     "far focus": ({}, {"focus": 1e3}),
     "far focus below": ({}, {"focus": -1e3}),
     "far off": ({"offset": 100.0}, {}),
@@ -167,13 +167,7 @@ EXTREMES = {
 }
 
 
-SLOW = "high index", "aperture of water"
-
-
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=pytest.mark.trial if name in SLOW else ()) for name in EXTREMES],
-)
+@pytest.mark.parametrize("name", EXTREMES)
 @pytest.mark.filterwarnings("error")
 def test_extremes_are_reached_or_say_so(name: str) -> None:
     of_scene, other = EXTREMES[name]
