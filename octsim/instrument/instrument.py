@@ -89,7 +89,11 @@ class Instrument:
 
     def sum(self, light: Found) -> PointSpectrum:
         """Sum light of this instrument to its spectrum."""
-        field = self.scheme.field(light, self.wavenumber, self._optics, self._options)
+        return self.over(light, self.wavenumber)
+
+    def over(self, light: Found, wavenumber: NDArray[np.float64]) -> PointSpectrum:
+        """Sum light of this instrument over wavenumbers (K,), 1/µm, within its band."""
+        field = self.scheme.field(light, wavenumber, self._optics, self._options)
         return PointSpectrum(*spectrum_of(field), light.status)
 
     def spectrum(self, diameter: float, focus: float) -> PointSpectrum:

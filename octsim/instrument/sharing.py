@@ -2,15 +2,11 @@
 
 from functools import cached_property
 
-import numpy as np
-from numpy.typing import NDArray
-
 from octsim.config.models import Config
-from octsim.instrument.instrument import Instrument, PointSpectrum
-from octsim.schemes.field_sum import spectrum_of
+from octsim.instrument.instrument import Instrument
 from octsim.schemes.fullwave.operators import Operators
 from octsim.schemes.fullwave.scheme import sharing
-from octsim.schemes.light import Found, LightAt
+from octsim.schemes.light import LightAt
 
 
 class SharingInstrument(Instrument):
@@ -27,11 +23,6 @@ class SharingInstrument(Instrument):
     def __init__(self, config: Config, operators: Operators) -> None:
         super().__init__(config)
         self._operators = operators
-
-    def over(self, light: Found, wavenumber: NDArray[np.float64]) -> PointSpectrum:
-        """Sum light of this instrument over wavenumbers (K,), 1/µm, within its band."""
-        field = self.scheme.field(light, wavenumber, self._optics, self._options)
-        return PointSpectrum(*spectrum_of(field), light.status)
 
     @cached_property
     def _tracer(self) -> LightAt:

@@ -1,7 +1,7 @@
 """The phase slope by Maxwell's equations at a few diameters of a sweep by rays, to compare."""
 
 from enum import IntEnum
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,12 +9,10 @@ from numpy.typing import NDArray
 from octsim.config.maxwell import beyond_maxwell, by_maxwell
 from octsim.config.models import Config
 from octsim.config.scheme import scheme_of
-from octsim.instrument.build import optics_of, scene_of
+from octsim.instrument.instrument import Instrument
 from octsim.phase.local_slopes import local_slope
 from octsim.schemes.cost import of_waves
-from octsim.schemes.field_sum import spectrum_of
-from octsim.schemes.fullwave.scheme import field, tracer
-from octsim.schemes.light import AccuracyStatus, Waves
+from octsim.schemes.light import AccuracyStatus
 
 Array = NDArray[np.float64]
 ACCURACY = 1e-3
@@ -76,21 +74,20 @@ def exact_slopes(config: Config, foci: Array) -> ExactSlopes:
     if status != ExactStatus.COMPARED:
         return ExactSlopes(slope, status)
     exact = by_maxwell(config, ACCURACY)
-    optics, options = optics_of(exact), {"accuracy": ACCURACY}
-    light_at, k = tracer(optics, options), exact.spectrum.wavenumbers()
+    instrument = Instrument(exact)
     for place in places:
         near = slice(place - 1, place + 2)
-        lights = [
-            cast("Waves", light_at(scene_of(exact, diameter), focus))
+        spectra = [
+            instrument.spectrum(diameter, focus)
             for diameter, focus in zip(diameters[near].tolist(), foci[near].tolist(), strict=True)
         ]
-        if any(light.status != AccuracyStatus.REACHED for light in lights):
+        if any(found.status != AccuracyStatus.REACHED for found in spectra):
             status = ExactStatus.NOT_REACHED
             continue
-        spectra = [spectrum_of(field(light, k, optics, options))[0] for light in lights]
         slope[place] = local_slope(
-            np.stack(spectra), k, diameters[near], exact.scene.swept_index, config.processing
-        )
+            np.stack([found.intensity for found in spectra]), instrument.wavenumber,
+            diameters[near], exact.scene.swept_index, config.processing,
+        )  # fmt: skip
     return ExactSlopes(slope, status)
 
 
