@@ -92,7 +92,7 @@ def beyond_scheme(config: Config) -> Iterator[str]:
 def as_far_as(scheme: Scheme, config: Config) -> Config:
     """Return a config, not checked, without what a scheme can't do of what it asks for.
 
-    For light by rays that a scheme of waves needs beside its own.
+    For light by another scheme than the run's, beside its own.
     """
     asked = {one.ability for one in asked_of_scheme(config)} - scheme.honours
     objective, polarisation, scene = config.objective, config.polarisation, config.scene

@@ -11,6 +11,7 @@ from octsim.config.fields import (
     Section,
     TableRange,
     Tolerance,
+    as_tuple,
     key,
 )
 from octsim.config.processing import PhaseEstimator
@@ -50,11 +51,6 @@ class Calibration(Section):
 Sample = Annotated[int, Field(ge=1, le=1_000_000_000)]
 
 
-def _tuple(value: object) -> object:
-    # YAML and JSON know lists; a tuple can't be changed
-    return tuple(value) if isinstance(value, list) else value
-
-
 def _first_to_last(value: tuple[int, int]) -> tuple[int, int]:
     if value[0] > value[1]:
         raise ValueError("the last sample stands before the first")
@@ -68,13 +64,15 @@ def _some(value: tuple[object, ...]) -> tuple[object, ...]:
     return value
 
 
-Samples = Annotated[tuple[Sample, Sample], BeforeValidator(_tuple), AfterValidator(_first_to_last)]
+Samples = Annotated[
+    tuple[Sample, Sample], BeforeValidator(as_tuple), AfterValidator(_first_to_last)
+]
 
 
 class DriftReference(Section):
     """More samples that are at rest, for a line that is subtracted as drift."""
 
-    reference: Annotated[tuple[Samples, ...], BeforeValidator(_tuple), AfterValidator(_some)]
+    reference: Annotated[tuple[Samples, ...], BeforeValidator(as_tuple), AfterValidator(_some)]
 
 
 def _drift_kind(value: object) -> str:

@@ -11,14 +11,10 @@ from octsim.config.fields import (
     PositiveNumber,
     Section,
     Wavelength,
+    as_tuple,
     key,
 )
 from octsim.config.units import Length
-
-
-def _tuple(value: object) -> object:
-    # YAML and JSON know lists; a tuple can't be changed
-    return tuple(value) if isinstance(value, list) else value
 
 
 def _different(values: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -38,7 +34,7 @@ class DesignBand(Section):
 
 
 _Numbers = Annotated[
-    tuple[PositiveNumber, ...], BeforeValidator(_tuple), AfterValidator(_different)
+    tuple[PositiveNumber, ...], BeforeValidator(as_tuple), AfterValidator(_different)
 ]
 
 
@@ -61,7 +57,7 @@ class Design(Section):
     )
     apertures: _Numbers = key([0.8, 1.0], "numerical apertures, beside the objective's")
     bands: Annotated[
-        tuple[DesignBand, ...], BeforeValidator(_tuple), AfterValidator(_different)
+        tuple[DesignBand, ...], BeforeValidator(as_tuple), AfterValidator(_different)
     ] = key(
         [{"min": "650 nm", "max": "800 nm"}, {"min": "600 nm", "max": "1000 nm"}],
         "wavelengths, beside the spectrum's",

@@ -23,6 +23,11 @@ def number(value: object) -> object:
     return value
 
 
+def as_tuple(value: object) -> object:
+    """Return a list as a tuple: YAML and JSON know lists, but a tuple can't be changed."""
+    return tuple(value) if isinstance(value, list) else value
+
+
 def as_text(value: Any) -> str:
     """Write a value of the config as a user would."""
     if isinstance(value, Mapping | list | tuple | bool) or value is None:

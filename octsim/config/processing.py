@@ -5,17 +5,12 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
 
-from octsim.config.fields import Number, PositiveLength, Section, key
+from octsim.config.fields import Number, PositiveLength, Section, as_tuple, key
 
 Window = Literal[
     "barthann", "bartlett", "blackman", "blackmanharris", "bohman", "boxcar", "cosine",
     "flattop", "hamming", "hann", "lanczos", "nuttall", "parzen", "taylor", "triang", "tukey",
 ]  # fmt: skip
-
-
-def _window(value: object) -> object:
-    # YAML and JSON know lists; a tuple can't be changed
-    return tuple(value) if isinstance(value, list) else value
 
 
 def _is_made(value: tuple[str | float, ...]) -> tuple[str | float, ...]:
@@ -32,7 +27,7 @@ def _is_made(value: tuple[str | float, ...]) -> tuple[str | float, ...]:
 
 
 ParametricWindow = Annotated[
-    tuple[str | float, ...], BeforeValidator(_window), AfterValidator(_is_made)
+    tuple[str | float, ...], BeforeValidator(as_tuple), AfterValidator(_is_made)
 ]
 
 
