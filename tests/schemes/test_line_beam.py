@@ -129,10 +129,9 @@ def slice_of_fullwave(slide: Slide, fill: float, aperture: float, offset: float)
     scene = CylinderOnPlane(*slide, offset=offset)
     k, along, waves = np.array([K]), np.zeros(1), int(K * slide.neuron * scene.radius) + 22
     path = contour(80, waves, slide.water * K * scene.height)
-    mirrors = tuple(mirror_waves(mirror, path.angle, waves) for mirror in (0, 1))
     operator = Operator(
         k, along, np.ones(1), scattering(scene, along, k, waves), coupling(scene, path, along, k),
-        mirrors,
+        mirror_waves(path.angle, waves),
     )  # fmt: skip
     pupil = GaussianPupil(fill)
     sine, weight = np.polynomial.legendre.leggauss(80)

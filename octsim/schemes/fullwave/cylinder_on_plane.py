@@ -32,6 +32,11 @@ class CylinderOnPlane(NamedTuple):
         """Height of the axis over the plane, µm."""
         return self.gap + self.radius
 
+    @property
+    def far_side(self) -> float:
+        """Optical path from the plane to the cylinder's far side, µm."""
+        return self.n_neuron * self.diameter + self.n_water * self.gap
+
 
 def azimuth_of(scene: Scene) -> float:
     """Return the angle from the y axis to that of the scene's cylinder, rad."""

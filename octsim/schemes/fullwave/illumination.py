@@ -33,13 +33,11 @@ class Lit(NamedTuple):
     h: Array
 
 
-def mirror_waves(mirror: int, angle: Array, waves: int) -> tuple[Array, Array]:
-    """Return the parts of e^{imβ}, m = 0 … M, that E_y and H_y of a mirror class have.
+def mirror_waves(angle: Array, waves: int) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    """Return the parts of e^{imβ}, m = 0 … M, that E_y and H_y have: of each mirror class.
 
     Parameters
     ----------
-    mirror : int
-        The class.
     angle : ndarray, shape (..., B)
         β.
     waves : int
@@ -47,11 +45,11 @@ def mirror_waves(mirror: int, angle: Array, waves: int) -> tuple[Array, Array]:
 
     Returns
     -------
-    e, h : ndarray, shape (..., M + 1, B)
+    (e, h), (e, h) : ndarray, shape (..., M + 1, B)
     """
     turn = np.arange(waves + 1)[:, np.newaxis] * angle[..., np.newaxis, :]
     odd, even = 1j * np.sin(turn), np.cos(turn) + 0j
-    return (odd, even) if mirror == 0 else (even, odd)
+    return (odd, even), (even, odd)
 
 
 def illumination(
@@ -87,8 +85,7 @@ def illumination(
     r = reflection(
         sideways + 0j, across + 0j, below, above, scene.n_glass, scene.n_water, upwards=True
     )
-    odd, even = mirror_waves(0, np.arctan2(across, above.real), waves)
-    classes = (odd, even), (even, odd)
+    classes = mirror_waves(np.arctan2(across, above.real), waves)
     wavenumber = k[:, np.newaxis, np.newaxis]
     weight = np.stack([pupil.amplitude(sine, aperture, one) for one in k.tolist()])
     # both halves of the integral over k_x

@@ -48,7 +48,7 @@ def operator(
         k, along, weight,
         scattering(scene, along, k, orders.waves),
         coupling(scene, path, along, k),
-        tuple(mirror_waves(mirror, path.angle, orders.waves) for mirror in (0, 1)),
+        mirror_waves(path.angle, orders.waves),
     )  # fmt: skip
 
 

@@ -88,17 +88,12 @@ def first_nodes(
     """Return the wavenumbers in a band that are usually enough."""
     # the plane's light of the pupil's rim is apart from that of the axis by the focus's distance
     rim = 2 * focus * (scene.n_glass - math.sqrt(scene.n_glass**2 - aperture**2))
-    far_side = _far_side(scene)
-    return _nodes(max(far_side, abs(rim - far_side)), band, accuracy)
+    return _nodes(max(scene.far_side, abs(rim - scene.far_side)), band, accuracy)
 
 
 def most_nodes(scene: CylinderOnPlane, band: tuple[float, float], accuracy: float) -> int:
     """Return the wavenumbers in a band that are not exceeded, whatever the focus."""
-    return min(MOST_WAVENUMBERS, 2 * _nodes(_far_side(scene), band, accuracy) + 24)
-
-
-def _far_side(scene: CylinderOnPlane) -> float:
-    return scene.n_neuron * scene.diameter + scene.n_water * scene.gap
+    return min(MOST_WAVENUMBERS, 2 * _nodes(scene.far_side, band, accuracy) + 24)
 
 
 def _nodes(reach: float, band: tuple[float, float], accuracy: float) -> int:

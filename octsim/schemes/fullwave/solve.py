@@ -75,7 +75,7 @@ def field_at(
     )
     radial = radial_nodes(aperture, scene.n_glass, focus, float(k.max()))
     whole = norm(pupil, aperture, k, radial) * 4 * np.pi * scene.n_glass
-    cylinder = np.zeros((TERMS_OF_CYLINDER, 2, k.size), np.complex128)
+    cylinder = np.zeros((len(operator.cylinder), 2, k.size), np.complex128)
     for lit in lights:
         e, h = incoming(operator, lit, tolerance)
         for term, matrix in enumerate(operator.cylinder):
@@ -85,10 +85,6 @@ def field_at(
     plane = plane_return(scene, pupil, aperture, focus, k, radial)
     both = np.broadcast_to(plane, (2, k.size))
     return Solved(plane + cylinder[0], np.stack((both, cylinder[1], cylinder[2])))
-
-
-TERMS_OF_CYLINDER = len(TERMS)
-"""All of the cylinder's light, that of its near side and that of its far side."""
 
 
 def solve(
@@ -172,5 +168,4 @@ def removed_path(scene: CylinderOnPlane, focus: float) -> float:
 
     It is midway between the plane's and the far side's, so that the rest is as smooth as can be.
     """
-    across = scene.n_water * scene.gap + scene.n_neuron * scene.diameter
-    return -2 * scene.n_glass * focus + across
+    return -2 * scene.n_glass * focus + scene.far_side

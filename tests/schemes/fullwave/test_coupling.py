@@ -53,7 +53,7 @@ def test_it_is_that_of_another_contour_and_s_and_p_light(
     kappa = np.sqrt(1.33**2 - along**2)
     path = contour(60, waves, float(kappa * K * scene.height))
     by = coupling(scene, path, np.array([along]), np.array([K]))
-    found = reflected(by, e[None, None], h[None, None], *mirror_waves(mirror, path.angle, waves))
+    found = reflected(by, e[None, None], h[None, None], *mirror_waves(path.angle, waves)[mirror])
     for one, other in zip(found, expected, strict=True):
         np.testing.assert_allclose(one[0, 0], other, rtol=1e-9, atol=1e-15)
 
