@@ -8,16 +8,14 @@ scheme vogel, and a scan of 501 foci. `--write` puts both into docs/fullwave.md.
 """
 
 import argparse
-import hashlib
-import subprocess
 import time
 from concurrent.futures import ProcessPoolExecutor
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 from dense_waves import Beam, Slide, dense_waves
+from drawn_points import ROOT, add_options, judged, seeded, write_into
 
 from octsim.optics.detector import fibre_detector
 from octsim.optics.materials import Constant
@@ -25,12 +23,10 @@ from octsim.optics.polarisation import Polarisation
 from octsim.optics.pupil import FibrePupil, GaussianPupil, Pupil, UniformPupil
 from octsim.optics.scene import Scene, neuron_on_glass
 from octsim.schemes.field_sum import relative_error
-from octsim.schemes.light import AccuracyStatus, Optics
+from octsim.schemes.light import Optics
 from octsim.schemes.table import COUNTED_RAYS, FULL_WAVE
 
-ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs/fullwave.md"
-BEGIN, END = "<!-- accuracy: begin -->", "<!-- accuracy: end -->"
 BAND = 2e3 * np.pi / 900, 2e3 * np.pi / 650
 WAVENUMBERS = np.linspace(*BAND, 65)
 DETECTOR = fibre_detector(1.2, 1.52, 300.0, 20.0, 5.0)
@@ -110,17 +106,6 @@ def measured(point: Drawn) -> dict[str, float | str]:
     }  # fmt: skip
 
 
-def judged(table: pd.DataFrame) -> pd.DataFrame:
-    """Add whether a point is wrong in silence, or unsure though it is right."""
-    reached = table.status == AccuracyStatus.REACHED
-    right = table.true <= table.accuracy
-    surely = table.true - table.reference_error > table.accuracy
-    return table.assign(
-        reached=reached, wrong=reached & surely, open=reached & ~right & ~surely,
-        unsure=~reached & right, warned=~reached & ~right, understated=table.true > table.stated,
-    )  # fmt: skip
-
-
 def timed() -> list[str]:
     """Return what points take, alone and beside rays, and a scan of foci."""
     pupil, diameters = PUPILS["fibre"], np.linspace(1, 2, 21).tolist()
@@ -167,17 +152,9 @@ def main() -> None:
     """Measure, print and, if asked, write the docs' table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("points", type=int, nargs="?", default=200)
-    parser.add_argument("--seed")
-    parser.add_argument("--table", type=Path, help="a CSV file for every point")
-    parser.add_argument("--write", action="store_true")
+    add_options(parser)
     asked = parser.parse_args()
-    commit = subprocess.run(
-        ["git", "rev-parse", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=True
-    ).stdout.strip()
-    seed = asked.seed or commit
-    generator = np.random.default_rng(
-        int.from_bytes(hashlib.sha256(seed.encode()).digest()[:8], "big")
-    )
+    seed, generator = seeded(asked.seed)
     points = [draw(generator) for _ in range(asked.points)]
     with ProcessPoolExecutor(2) as pool:
         rows = []
@@ -204,12 +181,7 @@ def main() -> None:
     print("\n".join(lines))
     print(table[~table.reached | table.wrong | table.open].to_string())
     if asked.write:
-        text = DOCS.read_text(encoding="utf-8")
-        before, rest = text.split(BEGIN)
-        after = rest.split(END)[1]
-        DOCS.write_text(
-            before + BEGIN + "\n" + "\n".join(lines) + "\n" + END + after, encoding="utf-8"
-        )
+        write_into(DOCS, lines)
 
 
 if __name__ == "__main__":

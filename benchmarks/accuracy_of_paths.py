@@ -7,27 +7,22 @@ is drawn is asked for, traced by scheme paths, and compared with `dense_grids.de
 """
 
 import argparse
-import hashlib
-import subprocess
 import time
 from concurrent.futures import ProcessPoolExecutor
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 from dense_grids import dense_field
+from drawn_points import ROOT, add_options, judged, seeded, write_into
 
 from octsim.optics.detector import fibre_detector
 from octsim.optics.materials import Constant
 from octsim.optics.scene import neuron_on_glass
-from octsim.schemes.light import AccuracyStatus
 from octsim.schemes.paths.integrate import integrate
 from octsim.schemes.paths.path_sum import field_of_paths
 
-ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs/paths.md"
-BEGIN, END = "<!-- accuracy: begin -->", "<!-- accuracy: end -->"
 BAND = 2e3 * np.pi / 900, 2e3 * np.pi / 650
 WAVENUMBERS = np.linspace(*BAND, 65)
 FOCUS_DISTANCE, MAGNIFICATION = 300.0, 20.0
@@ -91,19 +86,6 @@ def measured(point: Drawn) -> dict[str, float]:
     }  # fmt: skip
 
 
-def judged(table: pd.DataFrame) -> pd.DataFrame:
-    """Add whether a point is wrong in silence, or unsure though it is right."""
-    reached = table.status == AccuracyStatus.REACHED
-    right = table.true <= table.accuracy
-    return table.assign(
-        reached=reached,
-        wrong=reached & (table.true - table.reference_error > table.accuracy),
-        open=reached & ~right & (table.true - table.reference_error <= table.accuracy),
-        unsure=~reached & right,
-        warned=~reached & ~right,
-    )
-
-
 def rows_of(table: pd.DataFrame, name: str) -> list[str]:
     """Return the rows of the docs' table for some points."""
     off = (table.true / table.accuracy)[table.reached]
@@ -118,17 +100,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("points", type=int, nargs="?", default=1000)
     parser.add_argument("steep", type=int, nargs="?", default=300)
-    parser.add_argument("--seed")
-    parser.add_argument("--table", type=Path, help="a CSV file for every point")
-    parser.add_argument("--write", action="store_true")
+    add_options(parser)
     asked = parser.parse_args()
-    commit = subprocess.run(
-        ["git", "rev-parse", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=True
-    ).stdout.strip()
-    seed = asked.seed or commit
-    generator = np.random.default_rng(
-        int.from_bytes(hashlib.sha256(seed.encode()).digest()[:8], "big")
-    )
+    seed, generator = seeded(asked.seed)
     points = [draw(generator, False) for _ in range(asked.points)]
     steep = [draw(generator, True) for _ in range(asked.steep)]
     with ProcessPoolExecutor(2) as pool:
@@ -148,12 +122,7 @@ def main() -> None:
     print("\n".join(lines))
     print(table[table.wrong | table.open | table.warned].to_string())
     if asked.write:
-        text = DOCS.read_text(encoding="utf-8")
-        before, rest = text.split(BEGIN)
-        after = rest.split(END)[1]
-        DOCS.write_text(
-            before + BEGIN + "\n" + "\n".join(lines) + "\n" + END + after, encoding="utf-8"
-        )
+        write_into(DOCS, lines)
 
 
 if __name__ == "__main__":
