@@ -20,3 +20,4 @@ def test_a_folder_that_netcdf_can_not_name_is_refused(name: bytes, tmp_path: Pat
 @pytest.mark.parametrize("name", ["my data", "it's", 'a"b', "naïve µ 日本", "new\nline", "$HOME"])
 def test_a_folder_of_any_other_name_is_taken(name: str, tmp_path: Path) -> None:
     require_folder(tmp_path / name / "results")
+    assert not (tmp_path / name).exists()
