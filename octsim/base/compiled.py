@@ -62,9 +62,13 @@ def compiled(*apart: Callable[..., Any], **options: Any) -> Callable[[Function],
 
     def compile_(function: Function) -> Function:
         chosen: Any = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True, **options}
+        digest = _digest(function)
+        # by this, the types and a number that begins anew in each process numba names machine code,
+        # and of two codes of one name it sets the variables of the first alone
+        function.__qualname__ += f".{digest}"
         dispatcher: Any = numba.njit(**chosen)(function)
         if not isinstance(dispatcher, FunctionType):  # which it is with NUMBA_DISABLE_JIT
-            dispatcher._cache = kept = KeptCode(function, _digest(function))
+            dispatcher._cache = kept = KeptCode(function, digest)
             dispatcher.compile = _whole(
                 dispatcher.compile, kept, frozenset(part.__name__ for part in apart)
             )

@@ -267,3 +267,34 @@ print(double(2.0), names.count("half"), again(2.0), names.count("half"))
 def test_a_part_is_compiled_once_for_all_callers_of_the_same_arithmetic(tmp_path: Path) -> None:
     (tmp_path / "shared.py").write_text(SHARED, encoding="utf-8")
     assert said(run(tmp_path, tmp_path / "kept", "import shared"))[0] == "9.0 1 5.0 2"
+
+
+MADE = """
+import numpy as np
+from octsim.base.compiled import compiled
+
+def make(part, count):
+    @compiled()
+    def filled(x):
+        one = np.full(count, part(x))
+        return (one, one.astype(np.int64)) if count > 2 else (one, one)
+    return filled
+"""
+
+
+def test_functions_that_processes_made_apart_of_one_code_work_together(tmp_path: Path) -> None:
+    kept, head = tmp_path / "kept", "from made import make; "
+    (tmp_path / "made.py").write_text(MADE, encoding="utf-8")
+    makes = []
+    for name, count in (("twice", 2), ("thrice", 3)):
+        (tmp_path / f"{name}.py").write_text(
+            "from numba.extending import register_jitable\n"
+            f"@register_jitable\ndef {name}(x):\n    return {count} * x\n",
+            encoding="utf-8",
+        )
+        makes.append(f"from {name} import {name}; print(*make({name}, {count})(2.0))")
+    alone = [said(run(tmp_path, kept, head + code))[0] for code in makes]
+    assert alone == ["[4. 4.] [4. 4.]", "[6. 6. 6.] [6 6 6]"]
+    for both in (makes, makes[::-1]):
+        found = said(run(tmp_path, kept, head + "; ".join(both)))[0]
+        assert sorted(found.split("\n")) == alone
