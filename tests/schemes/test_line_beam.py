@@ -139,7 +139,7 @@ def slice_of_fullwave(slide: Slide, fill: float, aperture: float, offset: float)
     whole = 2 * slide.glass * aperture * (squared * weight).sum()
     found = [0j, 0j]
     for lit in illumination(scene, pupil, aperture, FOCUS, along, k, waves, 60):
-        b = scattered(operator.cylinder.whole, *incoming(operator, lit, 1e-14))
+        b = scattered(operator.cylinder.whole, *incoming(operator, lit, 1e-14)[:2])
         density = collected(lit, *b, scene.n_water, along)
         found[lit.polarisation] += complex(density[0, 0]) / whole
     return found

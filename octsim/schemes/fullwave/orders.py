@@ -11,6 +11,10 @@ from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 
 MOST_NODES = 400
 """Of each integral."""
+MOST_MULTIPLICATIONS = 3e10
+"""Complex ones of a point, between cylinder and plane: about half a minute."""
+_RESONANT = 1.1
+"""Index over the water's above which resonances decide how many wavenumbers it takes."""
 
 
 class Orders(NamedTuple):
@@ -34,8 +38,13 @@ class Orders(NamedTuple):
 
     @property
     def within_budget(self) -> bool:
-        """Whether a solution takes seconds and not minutes."""
+        """Whether it is not more than is ever solved for."""
         return self.waves <= MOST_WAVES and max(self[1:]) <= MOST_NODES
+
+    @property
+    def size(self) -> int:
+        """What the multiplications of a wavenumber go with."""
+        return self.waves * self.contour * self.along
 
 
 def first_orders(
@@ -93,7 +102,25 @@ def first_nodes(
 
 def most_nodes(scene: CylinderOnPlane, band: tuple[float, float], accuracy: float) -> int:
     """Return the wavenumbers in a band that are not exceeded, whatever the focus."""
+    if scene.n_neuron > _RESONANT * scene.n_water:
+        return MOST_WAVENUMBERS
     return min(MOST_WAVENUMBERS, 2 * _nodes(scene.far_side, band, accuracy) + 24)
+
+
+def more_nodes(number: int, excess: float, fall: float) -> int:
+    """Return by how many to raise a number of wavenumbers.
+
+    Parameters
+    ----------
+    number : int
+        So far.
+    excess : float
+        Error of what is left out, over the largest that is allowed.
+    fall : float
+        What three Chebyshev coefficients more make of it.
+    """
+    needed = 3 * math.log(max(3 * excess, 1.0)) / -math.log(fall)
+    return math.ceil(min(max(needed, 3, number / 8), number / 2))
 
 
 def _nodes(reach: float, band: tuple[float, float], accuracy: float) -> int:

@@ -1,6 +1,6 @@
 r"""What the cylinder over the plane scatters: :math:`b = T (a + R b)` for each k and k_y."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +15,17 @@ Waves = tuple[Array, Array]
 _ITERATIONS = 40
 
 
-def incoming(operator: Operator, lit: Lit, tolerance: float) -> Waves:
-    """Return all regular waves that reach the cylinder, a + R b, of one mirror class.
+class Incoming(NamedTuple):
+    """All regular waves that reach the cylinder, of one mirror class, (K, Y, M + 1) each."""
+
+    e: Array
+    h: Array
+    multiplications: float
+    """Complex ones that they took, about: the same on all machines."""
+
+
+def incoming(operator: Operator, lit: Lit, tolerance: float) -> Incoming:
+    """Return the waves that reach the cylinder, a + R b, of one mirror class.
 
     By iteration, once through the plane each time; directly at those k and k_y where that does not
     converge, as for an index far from the water's or a large cylinder.
@@ -33,8 +42,9 @@ def incoming(operator: Operator, lit: Lit, tolerance: float) -> Waves:
     waves_of, whole = operator.mirrors[lit.mirror], operator.cylinder.whole
     e, h = lit.e, lit.h
     out = scattered(whole, e, h)
-    before = np.inf
+    before, once, done = np.inf, 4.0 * e.size * len(operator.plane.ee[0, 0]), 0.0
     for _ in range(_ITERATIONS):
+        done += once
         back_e, back_h = reflected(operator.plane, *out, *waves_of)
         e, h = lit.e + back_e, lit.h + back_h
         # outgoing waves tell: regular ones of high orders are large, and scatter nothing
@@ -45,14 +55,15 @@ def incoming(operator: Operator, lit: Lit, tolerance: float) -> Waves:
         change = float(changes.max())
         left = changes > tolerance * max(float(np.abs(b).max()) for b in out)
         if not left.any():
-            return e, h
+            return Incoming(e, h, done)
         if not change < before:
             break
         before = change
     for number in np.flatnonzero(left.any(axis=1)).tolist():
         one = number, left[number]
         e[one], h[one] = _direct(operator, lit, one)
-    return e, h
+    orders, nodes = waves_of[0].shape
+    return Incoming(e, h, done + left.sum() * (4 * orders**2 * nodes + (2 * orders) ** 3 / 3))
 
 
 def scattered(matrix: Array, e: Array, h: Array) -> Waves:

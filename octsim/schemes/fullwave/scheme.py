@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.base.errors import OctsimError
 from octsim.optics.polarisation import jones_rows
 from octsim.optics.scene import Scene
 from octsim.schemes.fullwave.cylinder_on_plane import azimuth_of, cylinder_on_plane
@@ -20,6 +21,12 @@ def tracer(optics: Optics, options: Options) -> LightAt:
     optics : Optics
     options : mapping
         ``accuracy``, largest error of the intensity over the largest intensity.
+
+    Raises
+    ------
+    OctsimError
+        By the function, if the scene is another than one cylinder over one plane, or the numerical
+        aperture is not below the index around the cylinder.
     """
     return sharing(optics, options, Operators())
 
@@ -28,8 +35,15 @@ def sharing(optics: Optics, options: Options, operators: Operators) -> LightAt:
     """Return such a function whose operators others share, as of another pupil."""
 
     def light_at(scene: Scene, focus: float) -> Waves:
+        numbers = cylinder_on_plane(scene)
+        if not optics.numerical_aperture < numbers.n_water:
+            raise OctsimError(
+                f"objective.numerical_aperture: {optics.numerical_aperture:g} given, but scheme "
+                "fullwave has no light that decays around the cylinder; give one below the index "
+                f"there, {numbers.n_water:g}, or tracing.scheme: paths"
+            )
         found = solve(
-            cylinder_on_plane(scene), optics.pupil, optics.numerical_aperture, focus, optics.band,
+            numbers, optics.pupil, optics.numerical_aperture, focus, optics.band,
             options["accuracy"], operators,
         )  # fmt: skip
         return found._replace(azimuth=azimuth_of(scene))

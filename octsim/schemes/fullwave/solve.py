@@ -12,9 +12,11 @@ from octsim.schemes.fullwave.detection import collected, norm, plane_return
 from octsim.schemes.fullwave.illumination import illumination
 from octsim.schemes.fullwave.operators import Operators
 from octsim.schemes.fullwave.orders import (
+    MOST_MULTIPLICATIONS,
     Orders,
     first_nodes,
     first_orders,
+    more_nodes,
     most_nodes,
     radial_nodes,
 )
@@ -50,6 +52,8 @@ class Solved(NamedTuple):
     """(2, K)."""
     terms: Array
     """(3, 2, K)."""
+    multiplications: float
+    """Complex ones that it took, about."""
 
 
 def field_at(
@@ -76,15 +80,18 @@ def field_at(
     radial = radial_nodes(aperture, scene.n_glass, focus, float(k.max()))
     whole = norm(pupil, aperture, k, radial) * 4 * np.pi * scene.n_glass
     cylinder = np.zeros((len(operator.cylinder), 2, k.size), np.complex128)
+    multiplications = 0.0
     for lit in lights:
-        e, h = incoming(operator, lit, tolerance)
+        e, h, taken = incoming(operator, lit, tolerance)
+        multiplications += taken
         for term, matrix in enumerate(operator.cylinder):
             density = collected(lit, *scattered(matrix, e, h), scene.n_water, operator.along)
             cylinder[term, lit.polarisation] += (density * operator.along_weight).sum(axis=1)
     cylinder /= whole
     plane = plane_return(scene, pupil, aperture, focus, k, radial)
     both = np.broadcast_to(plane, (2, k.size))
-    return Solved(plane + cylinder[0], np.stack((both, cylinder[1], cylinder[2])))
+    terms = np.stack((both, cylinder[1], cylinder[2]))
+    return Solved(plane + cylinder[0], terms, multiplications)
 
 
 def solve(
@@ -100,7 +107,7 @@ def solve(
 
     The error is estimated from a solution of raised orders at three wavenumbers, and from the last
     Chebyshev coefficients over the wavenumber. Orders and wavenumbers are raised until it is within
-    the accuracy, or beyond what a point may take.
+    the accuracy, or beyond what a point may take, in which case the last one is returned.
 
     Parameters
     ----------
@@ -119,8 +126,8 @@ def solve(
     number = first_nodes(scene, aperture, focus, band, accuracy)
     most = most_nodes(scene, band, accuracy)
     removed = removed_path(scene, focus)
-    best, checked, by_orders = None, None, np.inf
-    while orders.within_budget and number <= most:
+    best, checked, by_orders, spent, next_one = None, None, np.inf, 0.0, 0.0
+    while orders.within_budget and number <= most and spent + next_one <= MOST_MULTIPLICATIONS:
         k = nodes(band, number)
         found = field_at(point, k, orders, 1e-3 * accuracy, operators)
         if orders != checked:
@@ -129,7 +136,7 @@ def solve(
             by_orders = 2 * float(np.abs(finer.values - found.values[:, check]).max())
             checked = orders
         slow = np.exp(-1j * k * removed)
-        by_nodes = _left_out(np.abs(coefficients(found.values * slow)))
+        by_nodes, fall = _left_out(np.abs(coefficients(found.values * slow)))
         error = by_orders + by_nodes
         largest = float(np.sqrt((np.abs(found.values) ** 2).mean(axis=0).max()))
         reached = relative_error(largest, error) <= accuracy
@@ -139,10 +146,15 @@ def solve(
         )
         if reached or error < _ROUNDING * largest:
             return best
+        spent += found.multiplications
+        per_size = found.multiplications / (number * orders.size)
         if by_orders > by_nodes / 2:
             orders = orders.raised()
         if by_nodes > by_orders / 2:
-            number += max(3, number // 8)
+            allowed = accuracy * largest / 2
+            more = number + more_nodes(number, by_nodes / allowed, fall)
+            number = most if number < most < more else more
+        next_one = per_size * number * orders.size
     if best is not None:
         return best
     k = nodes(band, 1)
@@ -153,14 +165,17 @@ def solve(
     )  # fmt: skip
 
 
-def _left_out(series: NDArray[np.float64]) -> float:
-    """Return what Chebyshev coefficients (N, 2) say of those after them, in size.
+def _left_out(series: NDArray[np.float64]) -> tuple[float, float]:
+    """Return what Chebyshev coefficients (N, 2) say of those after them, in size, and their fall.
 
-    The last ones, and as many times more as they fall slowly: by resonances of a large cylinder.
+    The last three, and as many times more as they fall slowly: by resonances of a large cylinder.
+    The fall is what three coefficients more make of it.
     """
     last, before = (series[part].sum(axis=0) for part in (_LAST, _BEFORE))
     fall = np.clip(last / np.maximum(before, last), 1 / 3, 0.95)
-    return float((2 * last * fall / (1 - fall)).max())
+    left = 2 * last * fall / (1 - fall)
+    worst = int(left.argmax())
+    return float(left[worst]), float(fall[worst])
 
 
 def removed_path(scene: CylinderOnPlane, focus: float) -> float:

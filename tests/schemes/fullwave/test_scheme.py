@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import octsim
+from octsim.base.errors import OctsimError
 from octsim.base.threads import each
 from octsim.config.load import load_config
 from octsim.instrument.build import optics_of, scene_of
@@ -98,3 +99,10 @@ def test_a_focus_scan_makes_few_operators(monkeypatch: pytest.MonkeyPatch) -> No
     for focus in foci:
         traced(scene, focus)
     assert len(made) < len(foci)
+
+
+def test_an_aperture_at_the_waters_index_is_refused() -> None:
+    for aperture in (1.33, 1.4):
+        optics = optics_of(CONFIG)._replace(numerical_aperture=aperture)
+        with pytest.raises(OctsimError, match=r"numerical_aperture: 1\.\d+ given, .* below"):
+            tracer(optics, {"accuracy": 1e-3})(scene_of(CONFIG, 1.2), 0.7)

@@ -9,6 +9,7 @@ from dense_waves import Beam, Slide, dense_waves
 from numpy.typing import NDArray
 
 from octsim.optics.pupil import FibrePupil, GaussianPupil, Pupil, UniformPupil
+from octsim.schemes.fullwave import solve as solving
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 from octsim.schemes.fullwave.detection import collected
 from octsim.schemes.fullwave.illumination import illumination
@@ -67,7 +68,9 @@ def test_light_there_and_back_is_the_same(offset: float) -> None:
     ]
     for one, other in zip(*lights, strict=True):
         there, back = (
-            collected(to, *scattered(op.cylinder.whole, *incoming(op, of, 1e-16)), 1.33, op.along)
+            collected(
+                to, *scattered(op.cylinder.whole, *incoming(op, of, 1e-16)[:2]), 1.33, op.along
+            )
             for to, of in ((one, other), (other, one))
         )
         assert np.abs(there - back).max() <= 1e-12 * np.abs(there).max()
@@ -177,3 +180,26 @@ def test_extremes_are_reached_or_say_so(name: str) -> None:
         assert np.isfinite(light.error)
     else:
         assert light.status == AccuracyStatus.BUDGET_SPENT
+
+
+def test_a_point_stops_before_it_takes_more_than_its_budget(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    taken: list[float] = []
+
+    def counted(*given: Any) -> Any:
+        found = field_at(*given)
+        taken.append(found.multiplications)
+        return found
+
+    monkeypatch.setattr(solving, "field_at", counted)
+    resonant, most = SCENE._replace(n_neuron=2.2, diameter=1.0), 3e8
+    reached = solved(resonant, accuracy=1e-3)
+    assert reached.status == AccuracyStatus.REACHED
+    assert sum(taken) > most
+    taken.clear()
+    monkeypatch.setattr(solving, "MOST_MULTIPLICATIONS", most)
+    stopped = solved(resonant, accuracy=1e-3)
+    assert stopped.status == AccuracyStatus.BUDGET_SPENT
+    assert np.isfinite(stopped.values).all()
+    assert sum(taken) < 1.2 * most
