@@ -11,8 +11,8 @@ from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 
 MOST_NODES = 400
 """Of each integral."""
-MOST_MULTIPLICATIONS = 3e10
-"""Complex ones of a point, between cylinder and plane: about half a minute."""
+MOST_MULTIPLICATIONS = 1e11
+"""Complex ones of a point, between cylinder and plane: about a minute."""
 _RESONANT = 1.1
 """Index over the water's above which resonances decide how many wavenumbers it takes."""
 
