@@ -8,10 +8,13 @@ from markdown import table
 
 from octsim.config.models import Config
 from octsim.studies.calibration.expansion import LARGEST, expansion, sensitivity_at
+from octsim.studies.calibration.parameters import PARAMETERS
 from octsim.studies.calibration.round_trips import REST, TRIALS
+from octsim.studies.calibration.scheme import ACCURACY
 from octsim.studies.calibration.study import RAYS
-from octsim.studies.calibration.tolerances import INDICES, PARAMETERS
 
+TOLERANCE = {"um": "{0:g} nm", "rad": "{1:.3g}°", "1": "{2:g}"}
+UNIT = {"um": "mrad/nm per nm", "rad": "mrad/nm per rad", "1": "mrad/nm"}
 SHOWN = (1.0, 1.2, 1.4, 1.6, 1.8, 2.0)
 EXAMPLE = (0.011, 1.4)  # rad, µm
 
@@ -22,8 +25,15 @@ def rms(values: xr.DataArray) -> float:
 
 
 def span(values: xr.DataArray) -> str:
-    """Write values over the diameter from the first to the last."""
-    return " to ".join(f"{float(values[end]):.2f}".replace("-", "−") for end in (0, -1))
+    """Write the least and the greatest of some values."""
+    ends = float(values.min()), float(values.max())
+    return " to ".join(f"{end:.2f}".replace("-", "−") for end in ends)
+
+
+def percents(ratio: xr.DataArray) -> str:
+    """Write the least and the greatest of some ratios, less one, in percent."""
+    ends = float(ratio.min()) - 1, float(ratio.max()) - 1
+    return " to ".join(f"{end:+.1%}".replace("-", "−") for end in ends)
 
 
 def slopes(found: xr.Dataset) -> str:
@@ -40,13 +50,15 @@ def slopes(found: xr.Dataset) -> str:
             f"{1e3 * float(one['diameter_per_phase_standard_error']):.2f}",
             f"{float(one['phase_curvature']):+.4f}",
             f"{float(one['focus_phase_slope']):+.3f}",
+            f"{float(one['light_paths_phase_slope']):.3f}",
             f"{float(one['following_phase_slope']):.3f}",
             f"{float(one['fft_fixed_focus_phase_slope']):.3f}",
             f"{float(one['fft_following_phase_slope']):.3f}",
         ])  # fmt: skip
     head = [
         "d (µm)", "**slope** (mrad/nm)", "pm/mrad", "curvature (mrad/nm²)",
-        "∂φ/∂focus (mrad/nm)", "focus follows d", "fft, focus held", "fft, focus follows d",
+        "∂φ/∂focus (mrad/nm)", "by rays", "focus follows d", "fft, focus held",
+        "fft, focus follows d",
     ]  # fmt: skip
     return table(head, rows)
 
@@ -55,9 +67,8 @@ def budget(found: xr.Dataset, config: Config) -> str:
     """Write the sensitivities at some diameters, and what the tolerances make of them."""
     ends = (SHOWN[0], EXAMPLE[1], SHOWN[-1])
     rows = []
-    for name in PARAMETERS:
-        tolerance = getattr(config.calibration.tolerances, name)
-        index = name in INDICES
+    for name in found["parameter"].values.tolist():
+        tolerance, unit = getattr(config.calibration.tolerances, name), PARAMETERS[name].unit
         sensitivity = [
             float(found[f"{name}_sensitivity"].sel(diameter=d, method="nearest")) for d in ends
         ]
@@ -65,9 +76,9 @@ def budget(found: xr.Dataset, config: Config) -> str:
         checked = found["budget_error"].sel(parameter=name).max()
         rows.append([
             name.replace("_", " "),
-            f"{tolerance:g}" if index else f"{1e3 * tolerance:g} nm",
+            TOLERANCE[unit].format(1e3 * tolerance, np.degrees(tolerance), tolerance),
             *(f"{one:+.3g}".replace("e-0", "e-") for one in sensitivity),
-            "mrad/nm" if index else "mrad/nm per nm",
+            UNIT[unit],
             *(f"{100 * float(shares.sel(diameter=d, method='nearest')):.3f}" for d in ends),
             f"{float(checked):.0e}",
         ])  # fmt: skip
@@ -76,9 +87,19 @@ def budget(found: xr.Dataset, config: Config) -> str:
     rows.append(["all, and interpolation", "", "", "", "", "", *whole, ""])
     head = [
         "", "tolerance", *(f"sensitivity at {d:g} µm" for d in ends), "unit",
-        *(f"% of the slope at {d:g} µm" for d in ends), "two steps differ by (mrad/nm)",
+        *(f"% of the slope at {d:g} µm" for d in ends), "two rules differ by (mrad/nm)",
     ]  # fmt: skip
     return table(head, rows)
+
+
+def most_shares(found: xr.Dataset) -> str:
+    """Name the parameters that have most of the budget, with their mean share of the slope."""
+    shares = (found["budget"] / found["fixed_focus_phase_slope"]).mean("diameter")
+    largest = shares.sortby(shares, ascending=False)[:3]
+    return ", ".join(
+        f"{str(name).replace('_', ' ')} {100 * float(share):.1f} %"
+        for name, share in zip(largest["parameter"].values, largest.values, strict=True)
+    )
 
 
 def trips(fired: xr.Dataset) -> str:
@@ -113,24 +134,30 @@ def calibration_page(results: Path) -> str:
     slope = found["fixed_focus_phase_slope"]
     of_fft = found["fft_fixed_focus_phase_slope"] - slope
     chain = slope + found["focus_phase_slope"] * found["slope"] - found["following_phase_slope"]
-    apart = found["far_side_phase_slope"] - found["near_side_phase_slope"]
     one, at = expansion(*EXAMPLE, found), sensitivity_at(EXAMPLE[1], found)
+    by_rays = found["light_paths_phase_slope"].interp(diameter=EXAMPLE[1])
     off = 1e3 * (fired["expansion"] - fired["true_expansion"])
     fft_off = 1e3 * (fired["fft_expansion"] - fired["true_expansion"])
+    truth = 1e3 * config.action_potential.expansion
     top = fired["true_expansion"] > 0.9 * fired["true_expansion"].max()
     stated = np.hypot(fired["statistical_error"], fired["systematic_error"])
     return TEMPLATE.format(
         example=f"{1e3 * float(one.expansion):.0f} ± {1e3 * float(one.systematic_error):.0f} pm",
         example_slope=f"{at.slope:.2f} ± {at.standard_error:.2f}",
         thesis_example=f"{1e3 * 11 / float(found['predicted_phase_slope']):.0f} pm",
+        rays_example=f"{1e3 * 11 / float(by_rays):.0f}",
         slopes=slopes(found),
         chain=f"{float(np.abs(chain).max()):.0e}",
         far=span(found["far_side_phase_slope"]),
         near=span(found["near_side_phase_slope"]),
-        sides=f"{float(np.abs(apart / slope - 1).max()):.1%}",
         law=f"{float(found['slope']):.3f}",
-        more=f"{float((slope / found['following_phase_slope'] - 1).min()):.1%} to "
-        f"{float((slope / found['following_phase_slope'] - 1).max()):.1%}",
+        more=percents(slope / found["following_phase_slope"]),
+        by_rays=percents(found["light_paths_phase_slope"] / slope),
+        least=f"{float(slope.min()):.2f}",
+        greatest=f"{float(slope.max()):.2f}",
+        shift=percents(1 + found["slope_shift"] / slope),
+        most_shares=most_shares(found),
+        accuracy=f"{ACCURACY['fullwave']:.0e}".replace("e-0", "e-"),
         fft_rms=f"{rms(of_fft):.2f}",
         fft_max=f"{float(np.abs(of_fft).max()):.2f}",
         fft_percent=f"{100 * float(np.abs(of_fft / slope).max()):.1f}",
@@ -138,8 +165,7 @@ def calibration_page(results: Path) -> str:
         difference=f"{float(found['difference_error'].max()):.0e}",
         interpolation=f"{float(found['interpolation_error'].max()):.0e}",
         rays=RAYS,
-        rays_rms=f"{rms(found['rays_phase_slope'] - slope):.2f}",
-        rays_max=f"{float(np.abs(found['rays_phase_slope'] - slope).max()):.2f}",
+        rays_rms=f"{rms(found['rays_phase_slope'] - found['light_paths_phase_slope']):.2f}",
         largest=f"{LARGEST:g}",
         straight=f"{100 * float(np.abs(found['phase_curvature'] / slope).max()) * 10 / 2:.1f}",
         budget=budget(found, config),
@@ -156,6 +182,7 @@ def calibration_page(results: Path) -> str:
         rest=REST,
         seed=int(fired["seed"]),
         many=fired["trip_expansion"].size,
+        worst=f"{float(np.abs(fired['trip_expansion'] / truth - 1).max()):.0%}",
     )
 
 
@@ -165,7 +192,13 @@ Written by `make docs` from `results/thesis/calibration.nc` and `action_potentia
 
 A phase that moved by 11 mrad, on a neuron 1.4 µm thick: with {example_slope} mrad/nm that is
 {example} (the error is that of the calibration; that of the phase comes on top). The thesis's slope
-would have said {thesis_example}.
+would have said {thesis_example}, rays at a held focus {rays_example}.
+
+A slope is nothing without what it is of. This one is by Maxwell's equations (scheme `fullwave`,
+whatever the run's own), a pupil that the mode of a fibre fills (5 µm, at the magnification),
+unpolarised light, the focus held where the law puts it, and the estimator `sinusoid` with the
+frequency held. [design.md](design.md) says which pupil, focus and estimator know an expansion best:
+a pupil that is less filled has a slope that moves less with the diameter.
 
 ```sh
 .venv/bin/snakemake calibration --cores 2        # calibration.nc and its figure
@@ -184,18 +217,18 @@ octsim.expansion(0.011, 1.4, calibration)  # rad, µm: nm, with both errors
 
 An action potential does not move the objective. The thesis's slope is the change of the phase from
 one neuron to a thicker one, with the focus moved along the law in between; what an experiment sees
-is the change at a focus and a gap that stay where they are. The two differ by more than the
-thesis's oscillation: the slope at a held focus is larger, by {more}, and depends on the diameter.
+is the change at a focus and a gap that stay where they are. The two differ by {more}, and both
+depend on the diameter: the held slope is {least} to {greatest} mrad/nm.
 
 {slopes}
-Why: what is detected of a side of the neuron is the mean of rays of different optical paths, and
-how that mean differs from the path on the axis depends on the side's curvature and on where it lies
-from the focus. At a held focus, by itself, the light of the far side moves its phase by {far}
-mrad/nm and that of the near side by {near}, though its lowest point stays where it is; the
-difference is the slope, to {sides} (the glass's own reflection is left). In the thesis's slope the
-focus moves too, by {law} nm for each nm of diameter, which takes back most of that. The chain rule
-says just this, slope(follows) = slope(held) + {law} ∂φ/∂focus, and the columns obey it to {chain}
-mrad/nm.
+Slopes by rays (light paths to 1e-8) are {by_rays} from Maxwell's: rays have neither the diffraction
+of the pupil nor its fibre ([validity.md](validity.md)). That is why the calibration is not by them
+where it need not be.
+
+The light of the far side by itself moves its phase by {far} mrad/nm and that of the near side by
+{near}, though its lowest point stays where it is. The rest is the glass's own reflection, whose
+beat with both sides the estimator does not tell from theirs. The chain rule, slope(follows) =
+slope(held) + {law} ∂φ/∂focus, is obeyed by the columns to {chain} mrad/nm.
 
 - **Phase**: by default a sinusoid of the held frequency 2nd, its offset and amplitude linear in k,
   is fitted by least squares; `calibration.estimator` names another
@@ -204,10 +237,14 @@ mrad/nm.
   most {fft_max} ({fft_percent} %). A calibration serves the estimator that it was made with, and no
   other. What an estimator holds (frequency, component) it holds while anything moves.
 - **Numbers**: the slope is taken over ±{step} nm and ±half of that, which agree to {difference}
-  mrad/nm, on spectra of the scheme `paths` at an accuracy of 1e-8, whatever the run's own scheme:
-  over such a step the slope by {rays} rays is {rays_rms} mrad/nm rms away, {rays_max} at most, as
-  rays come and go at the detector's edge. Between the diameters cubic splines are used; from every
-  second one they are within {interpolation} mrad/nm.
+  mrad/nm, on spectra at an accuracy of {accuracy}: the error of waves is the same on both sides of
+  so small a step. Counted rays come and go at the detector's edge: over such a step the slope by
+  {rays} of them is {rays_rms} mrad/nm rms from that by light paths. Between the diameters cubic
+  splines are used; from every second one they are within {interpolation} mrad/nm.
+- **Scheme**: `calibration: {{scheme: paths}}` calibrates by rays. How far these are from Maxwell's
+  equations is then part of the standard error, as `model` in the budget. Where Maxwell's equations
+  are not solved (an NA at or above the index of water) the calibration is by rays of itself, says
+  why, and states no standard error: it is not known (`model_status`, and NaN).
 - **Curvature**: at a held focus the slope itself changes as the neuron swells. `expansion` solves φ
   = s δ + c δ²/2; without c, 10 nm would be wrong by up to {straight} %. Beyond {largest} nm it
   refuses.
@@ -215,15 +252,21 @@ mrad/nm.
 ## How sure it is
 
 `calibration.tolerances` states how well each thing is known, as one standard deviation. The slope
-is differentiated by each, over two steps that have to agree (the last column, times the tolerance),
-and the parts are added in quadrature, with the errors of the interpolation and of the finite
-differences.
+is found again with each thing off, at the five nodes of Gauss and Hermite's rule for its normal
+deviates, within ±2.9 tolerances. That gives its sensitivity, how far it scatters and by how much it
+is shifted as a mean; the last column is how far a rule of three is from that of five. Scatters are
+added in quadrature, with the errors of the interpolation and of the finite differences; shifts are
+added as they are (`slope_shift`, {shift} of the slope) and then in quadrature.
 
 {budget}
-The focus decides. The table takes it that the focus is looked for on the neuron itself, by the
-greatest intensity as in the law, and found within the tolerance; a diameter at rest that is
-misjudged then moves the focus with it. An NA does nothing: no light of note comes back near the
-rim.
+On average most is by {most_shares}. The table takes it that the focus is looked for on the neuron
+itself and found within the tolerance; a diameter at rest that is misjudged then moves the focus
+with it. By waves the total intensity mostly has no peak at the law's focus; what does is in
+[design.md](design.md). A neuron off the axis has no first derivative, as it is the same to both
+sides, and still counts, most of all by its tails: 150 nm off can be a quarter of the slope. `fill`
+is relative, of what fills the pupil. `polarisation` turns linear input, or else an analyser;
+without either it makes the light linear, by the sine of twice the angle. By rays these three are
+not seen, and `detector_radius` is.
 
 ## A series of your own
 
@@ -280,10 +323,10 @@ simulated at its diameter at that time, each with {photons} photons of shot nois
 pixels of a line camera hold, and turned to nanometres by the calibration. The recovered trace is
 {off} pm rms a spectrum from the truth, where {statistical} are stated; {trace_covered} % of it is
 within its stated error. Around the top (above 90 %) it is {top} pm off as a mean, the thesis's way
-(its transform's phase over its predicted slope) {fft_top} pm. Most of that is the focus, which the
-predicted slope takes to follow the diameter; the oscillation alone (the transform's slope at a held
-focus, over the calibrated one) is {oscillation} here and up to {most_oscillation} elsewhere, as
-the figure shows on the right.
+(its transform's phase over its predicted slope) {fft_top} pm.
+The thesis's slope is one for all diameters, pupils and foci; by itself, the oscillation of its
+transform (its slope at a held focus, over the calibrated one) is {oscillation} here and up to
+{most_oscillation} elsewhere, as the figure shows on the right.
 
 **Round trips**: {trials} at each of some diameters between those of the table (seed {seed}). Each
 knows {rest} noisy spectra at rest and one at 1 nm. With the instrument as believed only the
@@ -291,7 +334,10 @@ statistical error is stated; drawn from the tolerances (gap, indices, focus, ...
 without noise only the systematic one counts; then both.
 
 {trips}
-A standard error should cover 68 %; {many} trips tell it to about 1.5.
+A standard error of what is normal covers 68 %; {many} trips tell it to about 1.5. What is not known
+of the instrument is not normal, as the slope bends over it: more lies within the root of the mean
+square, which is what is stated, and the tails are longer (the largest error of a trip is {worst} of
+the expansion).
 
 ## Spectra of your own
 

@@ -47,11 +47,23 @@ def spectra() -> xr.Dataset:
     return octsim.spectra(SWEEP, octsim.detections(SWEEP))
 
 
+CALIBRATED = {
+    "sweep": {"focus": {"slope": 0.58, "intercept": "66 nm"}},
+    "calibration": {"diameters": {"start": "1.3 um", "stop": "1.5 um", "num": 11}},
+}
+BY_RAYS = {
+    **CALIBRATED,
+    "calibration": {"diameters": {"num": 11}, "scheme": "paths"},
+}
+
+
 @pytest.fixture(scope="session")
 def calibrated() -> xr.Dataset:
     """Calibrate the thesis's instrument at a few diameters, focused by a given law."""
-    config = load_config(
-        {"sweep": {"focus": {"slope": 0.58, "intercept": "66 nm"}}},
-        {"calibration": {"diameters": {"num": 11}}},
-    )
-    return calibration(config, None, 2)
+    return calibration(load_config(CALIBRATED), None, 2)
+
+
+@pytest.fixture(scope="session")
+def calibrated_by_rays() -> xr.Dataset:
+    """Calibrate it by light paths, over more diameters."""
+    return calibration(load_config(BY_RAYS), None, 2)

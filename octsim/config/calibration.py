@@ -15,7 +15,8 @@ from octsim.config.fields import (
     key,
 )
 from octsim.config.processing import PhaseEstimator
-from octsim.config.units import Length
+from octsim.config.units import Angle, Length
+from octsim.schemes.table import FULL_WAVE, LIGHT_PATHS
 
 
 class Tolerances(Section):
@@ -28,7 +29,18 @@ class Tolerances(Section):
     neuron: NumberTolerance = key(0.002, "refractive index")
     focus: Tolerance = key("10 nm", "from the focus that the law gives")
     numerical_aperture: NumberTolerance = key(0.01, "of the objective")
-    detector_radius: Tolerance = key("2 nm", "R_det, of the fibre core's image at the focus")
+    detector_radius: Tolerance = key(
+        "2 nm", "R_det, of the fibre core's image at the focus; by rays"
+    )
+    fill: NumberTolerance = key(
+        0.05, "width of what fills the pupil, relative to it; by scheme fullwave"
+    )
+    polarisation: Annotated[Angle, Field(ge=0, le=0.8)] = key(
+        "5 deg",
+        "direction of linear input, or else of the analyser; without either the light is linear "
+        "by the sine of twice this; by scheme fullwave",
+    )
+    offset: Tolerance = key("50 nm", "of the neuron, across it, from the axis; by scheme fullwave")
     wavelength_min: Tolerance = key("0.1 nm", "of the spectrometer, at the shortest")
     wavelength_max: Tolerance = key("0.1 nm", "of the spectrometer, at the longest")
 
@@ -44,6 +56,13 @@ class Calibration(Section):
     )
     estimator: PhaseEstimator = key(
         "sinusoid", "of the phase, one of processing.estimator, with the options of processing"
+    )
+    scheme: Annotated[
+        Literal["fullwave", "paths"] | None, BeforeValidator(lambda v: None if v == "none" else v)
+    ] = key(
+        None,
+        f"how spectra are found, whatever the run's scheme: {FULL_WAVE.name}, Maxwell's equations, "
+        f"or {LIGHT_PATHS.name}, rays; null is {FULL_WAVE.name} where it can",
     )
     tolerances: Tolerances = Tolerances()
 

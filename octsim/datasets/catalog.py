@@ -25,7 +25,7 @@ _COMPARED = ("scene", "objective", "detector", "tracing", "spectrum", "sweep", "
 # of spectra as accurate as small steps need, whatever the run's scheme
 _CALIBRATED = (
     "tracing.min_amplitude", "scene", "objective", "detector", "tracing.max_intersections",
-    "spectrum", "processing", "calibration", "sweep.focus",
+    "polarisation", "spectrum", "processing", "calibration", "sweep.focus",
 )  # fmt: skip
 
 _RUN = (
@@ -196,8 +196,8 @@ _BESIDE = (
         "calibration", "octsim.studies.calibration.study:calibration",
         "Differentiate the phase over the diameter at a fixed focus and gap",
         reads=_CALIBRATED, after=("focus_law",), beside=True,
-        summary="octsim.studies.calibration.study:summary",
-        doubts="octsim.stages.spectra:doubts",
+        summary="octsim.studies.calibration.told:summary",
+        doubts="octsim.studies.calibration.told:doubts",
         figures=(
             Figure("calibration", "octsim.figures.calibration:calibration_figure",
                    "phase slope at a fixed focus, and what makes its error"),

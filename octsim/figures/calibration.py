@@ -4,11 +4,25 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from octsim.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, label, title
+from octsim.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILION,
+    label,
+    tell,
+    title,
+)
+from octsim.studies.calibration.told import doubts
 
 _SLOPES = (
     # variable, colour, line, what the legend says
     ("fft_fixed_focus_phase_slope", SKY, "-", "fft, focus held"),
+    ("light_paths_phase_slope", PURPLE, "-", "by rays (light paths), focus held"),
+    ("maxwell_phase_slope", GREEN, "-", "by Maxwell's equations, focus held"),
     ("following_phase_slope", ORANGE, "--", "focus follows the diameter"),
     ("fft_following_phase_slope", VERMILION, ":", "fft, focus follows (the thesis)"),
 )
@@ -22,6 +36,7 @@ def calibration_figure(table: xr.Dataset) -> Figure:
     slopes, budget = figure.subplots(1, 2)
     _draw_slopes(slopes, table)
     _draw_budget(budget, table)
+    tell(figure, doubts(table))
     figure.suptitle(title(table, "Calibration of the phase"), fontsize=11)
     return figure
 
@@ -35,6 +50,8 @@ def _draw_slopes(axes: Axes, table: xr.Dataset) -> None:
     )  # fmt: skip
     axes.plot(diameter, slope, color=BLUE, linewidth=2, label="focus held: the calibration")
     for name, colour, line, text in _SLOPES:
+        if table[name].isnull().all() or (table[name] == slope).all():
+            continue  # not solved, or the calibration itself
         axes.plot(diameter, table[name], color=colour, linestyle=line, label=text)
     predicted = float(table["predicted_phase_slope"])
     axes.axhline(predicted, color=BLACK, linestyle="-.", label=f"prediction {predicted:.2f}")

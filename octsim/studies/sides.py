@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.optics.scene import NEURON_ON_GLASS
-from octsim.phase.derivatives import wrapped
 from octsim.schemes.field_sum import field_at
-from octsim.schemes.light import Light
+from octsim.schemes.fullwave.series import over_band
+from octsim.schemes.light import TERMS, Found, Light, Waves
 from octsim.tracing.light_paths import path_name
 
 GLASS = "PR"
@@ -34,8 +34,23 @@ def path_field(light: Light, name: str, wavenumber: float) -> complex:
     return field_of(light, rays_on(light, name.__eq__), wavenumber)
 
 
+def side_fields(light: Found, wavenumber: float) -> dict[str, NDArray[np.complex128]]:
+    """Return the fields of each side's light at one wavenumber, 1/µm.
+
+    Returns
+    -------
+    dict
+        Of ``near`` and ``far``, (C,): of rays one field, of waves one of each polarisation.
+    """
+    if isinstance(light, Waves):
+        k = np.array([wavenumber])
+        terms = dict(zip(TERMS, light.terms, strict=True))
+        return {side: over_band(light, terms[f"{side}_side"], k)[:, 0] for side in SIDES}
+    return {side: np.array([path_field(light, name, wavenumber)]) for side, name in SIDES.items()}
+
+
 def side_slopes(
-    trace_at: Callable[[float, float], Light],
+    light_at: Callable[[float, float], Found],
     diameter: float,
     focus: float,
     wavenumber: float,
@@ -45,7 +60,7 @@ def side_slopes(
 
     Parameters
     ----------
-    trace_at : callable
+    light_at : callable
         From diameter and focus, µm, to light.
     diameter, focus, step : float
         µm; the diameter moves by a step to each side.
@@ -55,15 +70,15 @@ def side_slopes(
     Returns
     -------
     dict
-        Of ``near`` and ``far``, mrad/nm; NaN without light.
+        Of ``near`` and ``far``, mrad/nm; NaN without light. Of two polarisations, the mean by
+        their intensities.
     """
-    before, after = trace_at(diameter - step, focus), trace_at(diameter + step, focus)
+    before, after = (
+        side_fields(light_at(diameter + by, focus), wavenumber) for by in (-step, step)
+    )
 
-    def slope(name: str) -> float:
-        fields = np.array([path_field(light, name, wavenumber) for light in (after, before)])
-        if not fields.all():
-            return np.nan
-        ends: NDArray[np.float64] = np.angle(fields)
-        return float(wrapped(ends[0] - ends[1]) / (2 * step))
+    def slope(side: str) -> float:
+        advance = complex(np.vdot(before[side], after[side]))
+        return float(np.angle(advance)) / (2 * step) if advance else np.nan
 
-    return {side: slope(name) for side, name in SIDES.items()}
+    return {side: slope(side) for side in SIDES}

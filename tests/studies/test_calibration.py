@@ -5,10 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from conftest import CALIBRATED
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from octsim.base.errors import DatasetError, OctsimError
+from octsim.base.errors import ConfigError, DatasetError, OctsimError
 from octsim.config.derive import by_rays, changed
 from octsim.config.load import load_config
 from octsim.config.models import Config
@@ -22,12 +23,12 @@ from octsim.phase.estimators.series import series_phases
 from octsim.schemes.light import AccuracyStatus
 from octsim.studies.calibration import slopes
 from octsim.studies.calibration import study as calibrate
-from octsim.studies.calibration.study import calibration, interpolation_error, summary
-from octsim.studies.calibration.tolerances import (
-    INDICES,
-    PARAMETERS,
-    moved,
-)
+from octsim.studies.calibration.expansion import expansion
+from octsim.studies.calibration.parameters import PARAMETERS, parameters_of
+from octsim.studies.calibration.scheme import ACCURACY, ModelStatus, converged
+from octsim.studies.calibration.study import calibration, interpolation_error
+from octsim.studies.calibration.told import doubts, summary
+from octsim.studies.calibration.tolerances import moved
 
 Array = NDArray[np.float64]
 K = Config().spectrum.wavenumbers()
@@ -80,11 +81,12 @@ def asked(**overlay: object) -> Config:
 
 
 @pytest.mark.trial
+@pytest.mark.parametrize("scheme", ["fullwave", "paths"])
 def test_plates_have_the_slopes_and_sensitivities_of_their_formula(
-    monkeypatch: pytest.MonkeyPatch,
+    monkeypatch: pytest.MonkeyPatch, scheme: str
 ) -> None:
     monkeypatch.setattr(slopes, "Instrument", Plates)
-    config = asked(diameters={"num": 8})
+    config = asked(diameters={"num": 8}, scheme=scheme)
     table = calibration(config)
     d, middle = table["diameter"].values, (K[0] + K[-1]) / 2
     held = 2 * N * middle + 2 * BEND * d
@@ -100,7 +102,9 @@ def test_plates_have_the_slopes_and_sensitivities_of_their_formula(
         "wavelength_min": -N * 2 * np.pi / band.min**2 / 1e3,
         "wavelength_max": -N * 2 * np.pi / band.max**2 / 1e3,
     }
-    for name in PARAMETERS:
+    seen = parameters_of(converged(config))
+    assert ("fill" in seen, "detector_radius" in seen) == (scheme == "fullwave", scheme == "paths")
+    for name in seen:
         found = table[f"{name}_sensitivity"].values
         assert found == pytest.approx(expected.get(name, 0.0), rel=1e-6, abs=1e-7), name
     assert (table["budget_error"] < 1e-6).all()
@@ -108,18 +112,20 @@ def test_plates_have_the_slopes_and_sensitivities_of_their_formula(
 
 def test_the_standard_error_is_the_budgets_quadrature(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(slopes, "Instrument", Plates)
-    none = dict.fromkeys(("diameter", "gap", "focus", "detector_radius"), "0 nm")
-    none |= {"wavelength_min": "0 nm", "wavelength_max": "0 nm"}
-    zero = {"glass": 0.0, "water": 0.0, "numerical_aperture": 0.0}
-    only = asked(diameters={"num": 8}, tolerances={**none, **zero, "neuron": 0.01})
+    none = dict.fromkeys(("diameter", "gap", "focus", "detector_radius", "offset"), "0 nm")
+    none |= {"wavelength_min": "0 nm", "wavelength_max": "0 nm", "polarisation": "0 deg"}
+    zero = {"glass": 0.0, "water": 0.0, "numerical_aperture": 0.0, "fill": 0.0}
+    only = asked(diameters={"num": 8}, tolerances={**none, **zero, "neuron": 2e-4})
     table = calibration(only)
     error = table["fixed_focus_phase_slope_standard_error"].values
-    assert error == pytest.approx(0.01 * (K[0] + K[-1]), rel=1e-6)
+    assert error == pytest.approx(2e-4 * (K[0] + K[-1]), rel=1e-6)
     both = calibration(
-        asked(diameters={"num": 8}, tolerances={**none, **zero, "neuron": 0.01, "diameter": "1 um"})
+        asked(
+            diameters={"num": 8}, tolerances={**none, **zero, "neuron": 2e-4, "diameter": "20 nm"}
+        )
     )
     whole = both["fixed_focus_phase_slope_standard_error"].values
-    assert whole == pytest.approx(np.hypot(error, 2 * BEND), rel=1e-6)
+    assert whole == pytest.approx(np.hypot(error, 0.02 * 2 * BEND), rel=1e-6)
 
 
 def test_the_slopes_of_the_neuron_obey_the_chain_rule(calibrated: xr.Dataset) -> None:
@@ -127,23 +133,45 @@ def test_the_slopes_of_the_neuron_obey_the_chain_rule(calibrated: xr.Dataset) ->
         calibrated["fixed_focus_phase_slope"]
         + calibrated["focus_phase_slope"] * calibrated["slope"]
     )
-    assert chained.values == pytest.approx(calibrated["following_phase_slope"].values, abs=1e-5)
-    # by some 3 to 8 %: not the same calibration
+    assert chained.values == pytest.approx(calibrated["following_phase_slope"].values, abs=1e-4)
+    # not the same calibration
     ratio = calibrated["fixed_focus_phase_slope"] / calibrated["following_phase_slope"]
-    assert (ratio > 1.02).all()
+    assert float(np.abs(ratio - 1).max()) > 0.01
     assert (calibrated["difference_error"] < 1e-4).all()
 
 
-def test_the_slope_is_what_the_two_sides_do_by_themselves(calibrated: xr.Dataset) -> None:
-    apart = calibrated["far_side_phase_slope"] - calibrated["near_side_phase_slope"]
-    slope = calibrated["fixed_focus_phase_slope"]
-    assert apart.values == pytest.approx(slope.values, rel=0.01)
+@pytest.mark.parametrize(
+    ("pupil", "mean", "scatter"),
+    [({"gaussian": 0.5}, 22.17, 0.12), ({"gaussian": 1.0}, 21.68, 0.32),
+     ({"fibre": "5 um"}, 21.84, 0.75)],
+)  # fmt: skip
+def test_slopes_at_a_held_focus_are_those_that_another_code_found(
+    pupil: object, mean: float, scatter: float
+) -> None:
+    config = load_config({"objective": {"pupil": pupil}, "tracing": {"scheme": "fullwave"}})
+    own, step, found = Instrument(converged(config)), 1e-4, []
+    for diameter in np.linspace(1, 2, 51).tolist():
+        focus = 0.581 * diameter + 0.069
+        pair = own.spectra((diameter - step, diameter + step), (focus, focus))
+        before, after = series_phases(pair, K, N * diameter, FITTED)
+        found.append(float(wrapped(after - before)) / (2 * step))
+    # its digits, and what its interpolation over diameters, to 2e-3, leaves of them
+    assert np.mean(found) == pytest.approx(mean, abs=0.02)
+    assert np.std(found) == pytest.approx(scatter, abs=0.006)
+
+
+def test_the_slope_is_what_the_two_sides_do_by_themselves(calibrated_by_rays: xr.Dataset) -> None:
+    table = calibrated_by_rays
+    apart = table["far_side_phase_slope"] - table["near_side_phase_slope"]
+    assert apart.values == pytest.approx(table["fixed_focus_phase_slope"].values, rel=0.01)
     # the side that stays where it is moves its phase too, unlike that of a plate
-    assert (calibrated["near_side_phase_slope"] < -0.3).all()
+    assert (table["near_side_phase_slope"] < -0.3).all()
 
 
-def test_many_counted_rays_and_a_larger_step_give_the_same_slope(calibrated: xr.Dataset) -> None:
-    one = calibrated.isel(diameter=3)
+def test_many_counted_rays_and_a_larger_step_give_the_same_slope(
+    calibrated_by_rays: xr.Dataset,
+) -> None:
+    one = calibrated_by_rays.isel(diameter=3)
     diameter, focus, step = float(one["diameter"]), float(one["focus"]), 3e-3
     rays = Instrument(by_rays(load_config(), 200_000))
     spectra = rays.spectra((diameter - step, diameter + step), (focus, focus))
@@ -157,34 +185,124 @@ def test_many_counted_rays_and_a_larger_step_give_the_same_slope(calibrated: xr.
 
 
 @pytest.mark.parametrize(
-    ("name", "change"), [("gap", 2e-3), ("neuron", 2e-3), ("detector_radius", 2e-3)]
-)
+    ("scheme", "name", "change"),
+    [("fullwave", "gap", 1e-3), ("fullwave", "neuron", 1e-3), ("fullwave", "fill", 0.02),
+     ("fullwave", "polarisation", 0.05), ("paths", "gap", 2e-3), ("paths", "neuron", 2e-3),
+     ("paths", "detector_radius", 2e-3)],
+)  # fmt: skip
 def test_a_sensitivity_is_what_another_calibration_finds(
-    calibrated: xr.Dataset, name: str, change: float
+    request: pytest.FixtureRequest, scheme: str, name: str, change: float
 ) -> None:
-    one = calibrated.isel(diameter=2)
-    diameter, focus, step = float(one["diameter"]), float(one["focus"]), 1e-3
-    found = []
-    for by in (-change, change):
-        other = Instrument(moved(calibrate.converged(Config()), {name: by}, 0.0).config)
-        spectra = other.spectra((diameter - step, diameter + step), (focus, focus))
-        before, after = series_phases(spectra, K, N * diameter, FITTED)
-        found.append(wrapped(after - before) / (2 * step))
-    stated = float(one[f"{name}_sensitivity"]) * (1.0 if name in INDICES else 1e3)
+    table = request.getfixturevalue({"fullwave": "calibrated"}.get(scheme, "calibrated_by_rays"))
+    one = table.isel(diameter=2)
+    diameter, focus = float(one["diameter"]), float(one["focus"])
+    found = [slope_of(scheme, {name: by}, diameter, focus) for by in (-change, change)]
+    stated = float(one[f"{name}_sensitivity"])
+    stated *= 1e3 if PARAMETERS[name].unit == "um" else 1.0
     assert (found[1] - found[0]) / (2 * change) == pytest.approx(stated, rel=0.02)
 
 
-def test_the_finite_differences_of_the_budget_agree(calibrated: xr.Dataset) -> None:
-    error = calibrated["fixed_focus_phase_slope_standard_error"]
-    assert (calibrated["budget_error"] < 0.01 * error).all()
-    assert (calibrated["accuracy_status"] == 0).all()
-    assert (calibrated["intensity_error"] <= calibrate.ACCURACY).all()
+def slope_of(scheme: str, changes: dict[str, float], diameter: float, focus: float) -> float:
+    """Return the slope at a held focus with something of the instrument off."""
+    other, step = moved(converged(asked(scheme=scheme)), changes, 0.0).config, 1e-3
+    spectra = Instrument(other).spectra((diameter - step, diameter + step), (focus, focus))
+    before, after = series_phases(spectra, K, N * diameter, FITTED)
+    return float(wrapped(after - before)) / (2 * step)
 
 
-def test_small_steps_need_more_than_the_thesiss_rays(calibrated: xr.Dataset) -> None:
-    off = calibrated["rays_phase_slope"] - calibrated["fixed_focus_phase_slope"]
+def test_a_neuron_off_the_axis_counts_though_nothing_changes_at_first(
+    calibrated: xr.Dataset,
+) -> None:
+    one = calibrated.isel(diameter=2)
+    diameter, focus = float(one["diameter"]), float(one["focus"])
+    assert abs(float(one["offset_sensitivity"])) < 1e-6
+    nodes = np.linspace(-4, 4, 33)
+    weight = np.exp(-(nodes**2) / 2)
+    slopes_off = np.array([
+        slope_of("fullwave", {"offset": 0.05 * node}, diameter, focus)
+        for node in np.abs(nodes[:17]).tolist()
+    ])  # fmt: skip
+    change = np.concatenate([slopes_off, slopes_off[-2::-1]]) - slopes_off[-1]
+    drawn = np.sqrt((weight * change**2).sum() / weight.sum())
+    assert float(one["budget"].sel(parameter="offset")) == pytest.approx(drawn, rel=0.1)
+
+
+def test_the_budget_is_sure_enough_to_matter(
+    calibrated: xr.Dataset, calibrated_by_rays: xr.Dataset
+) -> None:
+    # off the axis the slope rises steeply in the tails, of which five nodes know more than three
+    most = {"offset": 0.3}
+    for table, scheme in ((calibrated, "fullwave"), (calibrated_by_rays, "paths")):
+        error = table["fixed_focus_phase_slope_standard_error"]
+        for name in table["parameter"].values.tolist():
+            unsure = table["budget_error"].sel(parameter=name)
+            assert (unsure < most.get(name, 0.03) * error).all(), name
+        assert (table["accuracy_status"] == 0).all()
+        assert (table["intensity_error"] <= ACCURACY[scheme]).all()
+
+
+def test_small_steps_need_more_than_the_thesiss_rays(calibrated_by_rays: xr.Dataset) -> None:
+    table = calibrated_by_rays
+    off = table["rays_phase_slope"] - table["fixed_focus_phase_slope"]
     assert float(np.abs(off).max()) > 0.05
     assert float(np.sqrt((off**2).mean())) < 0.5
+
+
+def test_rays_have_their_distance_from_maxwell_in_their_error(
+    calibrated: xr.Dataset, calibrated_by_rays: xr.Dataset
+) -> None:
+    assert (calibrated["model_status"] == ModelStatus.BY_MAXWELL).all()
+    assert "model" not in calibrated["parameter"].values
+    assert not doubts(calibrated)
+    table = calibrated_by_rays
+    assert (table["model_status"] == ModelStatus.COMPARED).all()
+    away = table["fixed_focus_phase_slope"] - table["maxwell_phase_slope"]
+    model = table["budget"].sel(parameter="model")
+    assert np.allclose(model, np.abs(away))
+    assert (table["fixed_focus_phase_slope_standard_error"] >= model).all()
+    (doubt,) = doubts(table)
+    assert "from Maxwell's equations" in doubt
+    # both tables have both
+    both = calibrated.sel(diameter=1.4, method="nearest"), table.sel(diameter=1.4, method="nearest")
+    for name in ("maxwell_phase_slope", "light_paths_phase_slope"):
+        assert float(both[0][name]) == pytest.approx(float(both[1][name]), abs=1e-4)
+
+
+def test_rays_that_nothing_is_known_of_have_no_error_and_say_so(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(slopes, "Instrument", Plates)
+    monkeypatch.setattr(slopes, "side_slopes", lambda *_: {"near": 0.0, "far": 0.0})
+    config = asked(diameters={"num": 8})
+    table = calibration(changed(config, {"objective": {"numerical_aperture": 1.34}}))
+    assert (table["model_status"] == ModelStatus.NOT_COMPARED).all()
+    assert np.isnan(table["fixed_focus_phase_slope_standard_error"]).all()
+    assert "not known" in summary(table)
+    assert any("numerical_aperture: 1.34 given" in doubt for doubt in doubts(table))
+    moved_by = expansion(0.011, 1.4, table)
+    assert np.isfinite(moved_by.expansion)
+    assert np.isnan(moved_by.systematic_error)
+
+
+@pytest.mark.parametrize(
+    ("overlay", "said"),
+    [
+        ({"calibration": {"scheme": "fullwave"}, "objective": {"numerical_aperture": 1.4}},
+         r"calibration\.scheme: fullwave given, but .*numerical_aperture: 1\.4 given"),
+        ({"calibration": {"scheme": "paths"}, "tracing": {"scheme": "fullwave"},
+          "objective": {"pupil": {"gaussian": 0.5}}},
+         r"calibration\.scheme: paths given, which does not weigh the pupil, and objective\.pupil"),
+        ({"budget": {"cpu_hours": 0.001}}, r"budget\.cpu_hours: 0\.001 given, but a calibration"),
+    ],
+)  # fmt: skip
+def test_what_can_not_be_calibrated_so_is_refused_in_a_line(
+    overlay: dict[str, object], said: str
+) -> None:
+    with pytest.raises(ConfigError, match=said) as refused:
+        calibration(
+            load_config({"sweep": {"focus": {"slope": LAW, "intercept": "66 nm"}}}, overlay)
+        )
+    assert "\n" not in str(refused.value)
 
 
 def test_an_interpolation_is_better_than_its_error_says() -> None:
@@ -208,12 +326,12 @@ def test_the_table_explains_itself_is_read_back_and_drawn(
         assert variable.attrs["units"], name
         assert variable.attrs["long_name"], name
     write(calibrated, tmp_path / "calibration.nc")
-    config = load_config(
-        {"sweep": {"focus": {"slope": 0.58, "intercept": "66 nm"}}},
-        {"calibration": {"diameters": {"num": 11}}},
-    )
+    config = load_config(CALIBRATED)
     stored = read(tmp_path / "calibration.nc", "calibration", config)
-    assert "tolerances.focus" in summary(stored)
+    told = summary(stored)
+    # a number is nothing without its pupil, focus and estimator
+    for part in ("fibre pupil", "held at 0.58 d +66 nm", "estimator sinusoid", "tolerances."):
+        assert part in told
     with pytest.raises(DatasetError, match=r"scene differ"):
         read(
             tmp_path / "calibration.nc",

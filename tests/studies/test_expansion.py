@@ -31,7 +31,7 @@ from octsim.studies.calibration.expansion import (
     series_expansion,
 )
 from octsim.studies.calibration.expansion import summary as expansion_summary
-from octsim.studies.calibration.study import converged
+from octsim.studies.calibration.scheme import converged
 
 Array = NDArray[np.float64]
 ROOT = Path(__file__).parents[2]

@@ -71,6 +71,7 @@ OTHERS: dict[str, Any] = {
         "diameters": {"num": 9},
         "step": "0.2 nm",
         "estimator": "fft",
+        "scheme": "paths",
         "tolerances": {
             "diameter": "1 nm",
             "gap": "1 nm",
@@ -80,6 +81,9 @@ OTHERS: dict[str, Any] = {
             "focus": "1 nm",
             "numerical_aperture": 0.1,
             "detector_radius": "1 nm",
+            "fill": 0.1,
+            "polarisation": "1 deg",
+            "offset": "1 nm",
             "wavelength_min": "1 nm",
             "wavelength_max": "1 nm",
         },

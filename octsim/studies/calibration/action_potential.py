@@ -18,7 +18,8 @@ from octsim.phase.noise import shot_noise
 from octsim.stages.focus_law import focus_line
 from octsim.studies.calibration.expansion import expansion
 from octsim.studies.calibration.round_trips import Trips, round_trips, trip_diameters
-from octsim.studies.calibration.study import by_fft, calibrating, converged
+from octsim.studies.calibration.scheme import converged
+from octsim.studies.calibration.study import by_fft, calibrating
 
 DURATION = 1e-3
 """Of the action potential at half its height, s (docs/calibration.md cites measured ones)."""

@@ -50,7 +50,9 @@ class Expansion(NamedTuple):
 
 
 def sensitivity_at(diameter: float, calibration: xr.Dataset) -> Sensitivity:
-    """Return a calibration interpolated at a diameter (µm), by cubic splines.
+    """Return a calibration interpolated at a diameter (µm): by cubic splines, its error by lines.
+
+    An error that is not known at one of the diameters beside is NaN.
 
     Raises
     ------
@@ -63,10 +65,12 @@ def sensitivity_at(diameter: float, calibration: xr.Dataset) -> Sensitivity:
             f"diameter: {diameter:g} um given, outside the calibration's {known[0]:g} to "
             f"{known[-1]:g} um; widen calibration.diameters and run the stage calibration again"
         )
-    names = ("", "_standard_error")
-    columns = [calibration[f"fixed_focus_phase_slope{name}"].values for name in names]
-    columns.append(calibration["phase_curvature"].values)
-    return Sensitivity(*(float(CubicSpline(known, column)(diameter)) for column in columns))
+    slope, curvature = (
+        float(CubicSpline(known, calibration[name].values)(diameter))
+        for name in ("fixed_focus_phase_slope", "phase_curvature")
+    )
+    error = calibration["fixed_focus_phase_slope_standard_error"].values
+    return Sensitivity(slope, float(np.interp(diameter, known, error)), curvature)
 
 
 def expansion(
@@ -241,11 +245,13 @@ def summary(found: xr.Dataset) -> str:
     alone = outliers_in(found)
     sizes = np.where(alone, np.nan, np.abs(found["expansion"].values))
     one = found.isel(time=int(np.nanargmax(sizes)))
-    statistical = float(one["statistical_error"])
-    error = "unknown" if np.isnan(statistical) else f"{statistical:.4f}"
+    statistical, systematic = (
+        "unknown" if np.isnan(error) else f"{error:.4f}"
+        for error in (float(one[f"{name}_error"]) for name in ("statistical", "systematic"))
+    )
     besides = f", {alone.sum()} outliers not counted" if alone.any() else ""
     return (
         f"largest change {float(one['expansion']):+.4f} nm at {float(one['time']):.6g} s, ± "
-        f"{error} (statistical) ± {float(one['systematic_error']):.4f} (systematic){besides}; "
+        f"{statistical} (statistical) ± {systematic} (systematic){besides}; "
         f"{int(found['samples_missing'])} of {sizes.size} samples missing"
     )

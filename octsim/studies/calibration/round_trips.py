@@ -15,7 +15,8 @@ from octsim.phase.measured_series import Series, change_from_rest
 from octsim.phase.noise import shot_noise
 from octsim.stages.focus_law import focus_line
 from octsim.studies.calibration.expansion import Expansion, expansion
-from octsim.studies.calibration.study import calibrating, converged
+from octsim.studies.calibration.scheme import converged
+from octsim.studies.calibration.study import calibrating
 from octsim.studies.calibration.tolerances import Place, drawn
 
 TRIALS = 200

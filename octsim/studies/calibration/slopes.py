@@ -14,7 +14,8 @@ from octsim.phase.derivatives import Array, Derivative, derivative, stencil, wra
 from octsim.phase.estimators.series import series_phases
 from octsim.phase.estimators.visible import require_fringe
 from octsim.schemes.light import AccuracyStatus
-from octsim.studies.calibration.tolerances import PARAMETERS, moved, offsets_of
+from octsim.studies.calibration.parameters import parameters_of
+from octsim.studies.calibration.tolerances import Nodes, changes_by, moved, nodes_of
 from octsim.studies.sides import side_slopes
 
 _CURVATURE_STEP = 4e-3  # µm
@@ -42,12 +43,11 @@ class Placed(NamedTuple):
 
 
 class Varied(NamedTuple):
-    """The instrument with one thing moved by five offsets."""
+    """The instrument with one thing that may be off."""
 
-    offsets: Array
-    """(5,); µm where it is a length."""
+    nodes: Nodes
     placed: Sequence[Placed]
-    """The instrument at each offset."""
+    """The instrument at each of N nodes."""
 
 
 class Bench(NamedTuple):
@@ -55,10 +55,8 @@ class Bench(NamedTuple):
 
     instrument: Instrument
     """As it is believed to be."""
-    by_rays: Instrument
-    """The same with counted rays."""
-    bent: Varied
-    """The neuron's diameter moved, and the focus held."""
+    others: Mapping[str, Instrument]
+    """The same by other schemes, by the variable that holds their slope."""
     varied: Mapping[str, Varied]
     """By the name of the parameter that is moved."""
     law_slope: float
@@ -72,17 +70,19 @@ class Bench(NamedTuple):
 
 def bench_of(
     converged: Config,
-    by_rays: Config,
+    others: Mapping[str, Config],
     processing: tuple[Processing, Processing],
     law_slope: float,
     points: Points | None,
 ) -> Bench:
-    """Return the bench of an instrument, traced to an accuracy and by counted rays.
+    """Return the bench of an instrument.
 
     Parameters
     ----------
-    converged, by_rays : Config
-        The instrument, traced in two ways.
+    converged : Config
+        The instrument, solved as accurately as small steps need.
+    others : mapping
+        The same by other schemes, by the variable that holds their slope.
     processing : tuple of Processing
         The calibration's and the thesis's.
     law_slope : float
@@ -91,20 +91,21 @@ def bench_of(
         Where light that was found before is kept.
     """
     own = Instrument(converged, points)
-    bends = stencil(0.0, _CURVATURE_STEP)
+
+    def placed(name: str, by: float) -> Placed:
+        if not by:
+            return Placed(own)
+        at = moved(converged, {name: by}, law_slope)
+        return Placed(Instrument(at.config, points), at.diameter, at.focus)
 
     def varied(name: str) -> Varied:
-        offsets = offsets_of(converged, name)
-        places = [moved(converged, {name: by}, law_slope) for by in offsets.tolist()]
-        return Varied(
-            offsets, [Placed(Instrument(at.config, points), at.diameter, at.focus) for at in places]
-        )
+        nodes = nodes_of(converged, name)
+        return Varied(nodes, [placed(name, by) for by in nodes.offset.tolist()])
 
     return Bench(
         own,
-        Instrument(by_rays, points),
-        Varied(bends, [Placed(own, by) for by in bends.tolist()]),
-        {name: varied(name) for name in PARAMETERS},
+        {name: Instrument(other, points) for name, other in others.items()},
+        {name: varied(name) for name in parameters_of(converged)},
         law_slope,
         converged.calibration.step,
         *processing,
@@ -124,8 +125,9 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
     Returns
     -------
     dict
-        By the names of the dataset's variables; ``sensitivity`` and ``sensitivity_error`` of each
-        of `PARAMETERS`, (P,), in mrad/nm per unit of the parameter.
+        By the names of the dataset's variables; of each parameter, (P,), ``sensitivity``, the
+        slope's derivative in mrad/nm per unit of it, and ``spread``, ``shift`` and ``budget_error``
+        of the slope by its tolerance, mrad/nm.
 
     Raises
     ------
@@ -146,9 +148,15 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
     require_fringe("calibration", middle, k, np.array([depth]), fixed.error)
     following = observed(own, diameter + offsets, focus + bench.law_slope * offsets)
     focused = observed(own, at_rest, focus + offsets)
-    bent = [pair(placed) for placed in bench.bent.placed]
-    varied = {name: [pair(placed) for placed in one.placed] for name, one in bench.varied.items()}
-    accurate = [fixed, following, focused, *bent, *chain.from_iterable(varied.values())]
+    bends = stencil(0.0, _CURVATURE_STEP)
+    bent = [pair(Placed(own, by)) for by in bends.tolist()]
+    # nothing is off in the middle of each
+    here = pair(Placed(own))
+    varied = [
+        [here if placed == Placed(own) else pair(placed) for placed in one.placed]
+        for one in bench.varied.values()
+    ]
+    accurate = [fixed, following, focused, *bent, *chain.from_iterable(varied)]
 
     def phase_slope(seen: Spectra, processing: Processing) -> Derivative:
         phase = series_phases(seen.intensity, k, depth, processing)
@@ -158,12 +166,21 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
         before, after = series_phases(seen.intensity, k, depth, bench.processing)
         return float(wrapped(after - before)) / (2 * step)
 
-    def change(varied: Varied, pairs: list[Spectra]) -> Derivative:
-        return derivative(varied.offsets, np.array([pair_slope(pair) for pair in pairs]))
+    def slope_of(placed: Placed) -> float:
+        seen = pair(placed)
+        missed = seen.status in (AccuracyStatus.BUDGET_SPENT, AccuracyStatus.NOT_REACHED)
+        return np.nan if missed else pair_slope(seen)
+
+    def pair_slopes(pairs: list[Spectra]) -> Array:
+        return np.array([pair_slope(pair) for pair in pairs])
 
     slope = phase_slope(fixed, bench.processing)
-    sensitivities = [change(bench.varied[name], pairs) for name, pairs in varied.items()]
-    by_side = side_slopes(own.rays, diameter, focus, float((k[0] + k[-1]) / 2), step)
+    moves = [
+        (one.nodes, pair_slopes(pairs))
+        for one, pairs in zip(bench.varied.values(), varied, strict=True)
+    ]
+    changes = [changes_by(nodes, values) for nodes, values in moves]
+    by_side = side_slopes(own.light, diameter, focus, float((k[0] + k[-1]) / 2), step)
     return {
         **{f"{side}_side_phase_slope": of_side for side, of_side in by_side.items()},
         "fixed_focus_phase_slope": slope.value,
@@ -172,10 +189,12 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
         "focus_phase_slope": phase_slope(focused, bench.processing).value,
         "fft_fixed_focus_phase_slope": phase_slope(fixed, bench.fft).value,
         "fft_following_phase_slope": phase_slope(following, bench.fft).value,
-        "rays_phase_slope": pair_slope(pair(Placed(bench.by_rays))),
-        "phase_curvature": change(bench.bent, bent).value / 1e3,  # per nm
-        "sensitivity": np.array([one.value for one in sensitivities]),
-        "sensitivity_error": np.array([one.error for one in sensitivities]),
+        **{name: slope_of(Placed(other)) for name, other in bench.others.items()},
+        "phase_curvature": derivative(bends, pair_slopes(bent)).value / 1e3,  # per nm
+        "sensitivity": np.array([derivative(nodes.offset, at).value for nodes, at in moves]),
+        "spread": np.array([one.spread for one in changes]),
+        "shift": np.array([one.shift for one in changes]),
+        "budget_error": np.array([one.error for one in changes]),
         "intensity_error": max(seen.error for seen in accurate),
         "accuracy_status": max(seen.status for seen in accurate),
     }

@@ -7,28 +7,34 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import CubicSpline
 
+from octsim.base.errors import ConfigError
 from octsim.base.threads import each
-from octsim.config.derive import by_accuracy, by_rays
+from octsim.config.derive import by_rays
+from octsim.config.maxwell import beyond_maxwell
 from octsim.config.models import Config
 from octsim.config.processing import Processing
+from octsim.config.scheme import options_of, scheme_of
 from octsim.datasets.files import flags, make
 from octsim.instrument.points import Points
 from octsim.optics.two_beams import predicted_phase_slope
 from octsim.phase.derivatives import Array
 from octsim.schemes.light import AccuracyStatus
 from octsim.stages.focus_law import focus_line
+from octsim.studies.calibration.parameters import parameters_of
+from octsim.studies.calibration.scheme import (
+    MODEL,
+    ModelStatus,
+    converged,
+    paths_of,
+    rays_because,
+    waves_of,
+)
 from octsim.studies.calibration.slopes import bench_of, slopes_at
-from octsim.studies.calibration.tolerances import INDICES, PARAMETERS
 
-ACCURACY = 1e-8
-"""Of the spectra: 1e-6 moves slopes over 0.1 nm by up to 2e-4 mrad/nm, this by less than 1e-5."""
 RAYS = 3000
 """The thesis's rays, whose slope over such steps is stored beside, to compare."""
-
-
-def converged(config: Config) -> Config:
-    """Return the config of the same instrument, traced as accurately as small steps need."""
-    return by_accuracy(config, ACCURACY)
+_POINTS = 10
+"""Spectra of each parameter, of the curvature, and of each other scheme or less."""
 
 
 def calibrating(config: Config) -> Processing:
@@ -51,7 +57,8 @@ def calibration(
 
     An action potential does not move the objective. At each diameter the focus is the law's, and
     is held while the diameter moves by ``calibration.step`` to each side; so are the gap and the
-    estimator's settings. Spectra are of the scheme paths, whatever the run's own, at `ACCURACY`.
+    estimator's settings. Spectra are by ``calibration.scheme``, whatever the run's own: by
+    Maxwell's equations, unless these can't be solved for the scene.
 
     Parameters
     ----------
@@ -68,29 +75,54 @@ def calibration(
     Dataset
         Over the diameter: fixed_focus_phase_slope with its systematic standard error, its inverse
         diameter_per_phase and phase_curvature; the slope whose focus follows, the thesis's Fourier
-        transform's and those of each side's light by itself, beside; sensitivities to each
-        parameter and what its tolerance makes of it, budget(diameter, parameter), with the error of
-        the finite differences.
+        transform's, that of other schemes and those of each side's light by itself, beside;
+        sensitivities to each parameter and what its tolerance makes of it,
+        budget(diameter, parameter), with the error of the finite differences; and model_status.
 
     Raises
     ------
     OctsimError
-        If the law is needed and could not be fitted, or a diameter has no fringe.
+        If the law is needed and could not be fitted, a diameter has no fringe, the scheme that is
+        given can't do the scene, or it takes longer than ``budget.cpu_hours``.
     """
-    exact, line = converged(config), focus_line(config, law)
+    own, line = converged(config), focus_line(config, law)
     diameters = config.calibration.diameters.values()
+    _require_budget(own, diameters)
     foci = line.at(diameters)
     processing = calibrating(config), by_fft(config)
-    bench = bench_of(exact, by_rays(exact, RAYS), processing, line.slope, points)
+    bench = bench_of(own, _others(config), processing, line.slope, points)
     places = zip(diameters.tolist(), foci.tolist(), strict=True)
     rows = list(each(lambda place: slopes_at(bench, *place), places, threads))
+    named = [*parameters_of(own), *([MODEL] if rays_because(config) else [])]
     return make(
         "calibration",
         config,
         "Change of the phase with the diameter, at a fixed focus and gap",
-        _variables(config, diameters, rows) | {"focus": ("diameter", foci), "slope": line.slope},
-        {"diameter": diameters, "parameter": list(PARAMETERS)},
+        _variables(config, own, diameters, rows)
+        | {"focus": ("diameter", foci), "slope": line.slope, "intercept": line.intercept},
+        {"diameter": diameters, "parameter": named},
     )
+
+
+def _others(config: Config) -> dict[str, Config]:
+    """Return the instrument by every scheme that can, by the variable of its slope."""
+    waves = {} if beyond_maxwell(config) else {"maxwell_phase_slope": waves_of(config)}
+    return {
+        "rays_phase_slope": by_rays(config, RAYS), "light_paths_phase_slope": paths_of(config),
+    } | waves  # fmt: skip
+
+
+def _require_budget(own: Config, diameters: Array) -> None:
+    """Refuse what takes longer than is confirmed."""
+    scheme, options = scheme_of(own), options_of(own)
+    number = _POINTS * (len(parameters_of(own)) + 4)
+    seconds = number * sum(scheme.cost(options, d).seconds for d in diameters.tolist())
+    hours, most = seconds / 3600, own.budget.cpu_hours
+    if hours > most:
+        raise ConfigError(
+            f"budget.cpu_hours: {most:g} given, but a calibration by scheme {scheme.name} takes "
+            f"about {hours:.2g}; raise it to confirm, or give fewer calibration.diameters"
+        )
 
 
 def interpolation_error(diameter: Array, slope: Array) -> Array:
@@ -107,21 +139,33 @@ def interpolation_error(diameter: Array, slope: Array) -> Array:
     return np.maximum(missed, np.maximum(around[:-2], around[2:]))
 
 
-def _variables(config: Config, diameters: Array, rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
+def _variables(
+    config: Config, own: Config, diameters: Array, rows: Sequence[dict[str, Any]]
+) -> dict[str, Any]:
     """Return the variables of what is known at each diameter, with the budget of the errors."""
     column = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    sensitivity, sensitivity_error = column.pop("sensitivity"), column.pop("sensitivity_error")
     status = flags(AccuracyStatus, column.pop("accuracy_status"))
-    tolerances = config.calibration.tolerances
-    tolerance = np.array([getattr(tolerances, name) for name in PARAMETERS])
-    slope = column["fixed_focus_phase_slope"]
+    parameters = parameters_of(own)
+    slope, sensitivity = column["fixed_focus_phase_slope"], column.pop("sensitivity")
+    spread, shift = column.pop("spread"), column.pop("shift")
+    budget, budget_error = np.hypot(spread, shift), column.pop("budget_error")
+    parts = [*spread.T, shift.sum(axis=1)]  # shifts add, whatever their signs
+    exact = column.setdefault("maxwell_phase_slope", np.full(slope.size, np.nan))
+    if rays_because(config):
+        away = np.abs(slope - exact)
+        known = np.where(np.isnan(away), ModelStatus.NOT_COMPARED, ModelStatus.COMPARED)
+        budget = np.column_stack([budget, away])
+        budget_error = np.column_stack([budget_error, 0.0 * away])
+        parts.append(away)
+    else:
+        known = np.full(slope.size, ModelStatus.BY_MAXWELL)
     missed = interpolation_error(diameters, slope)
-    budget = np.abs(sensitivity) * tolerance
-    error = np.sqrt((budget**2).sum(axis=1) + missed**2 + column["difference_error"] ** 2)
+    error = np.linalg.norm([*parts, missed, column["difference_error"]], axis=0)
     k = config.spectrum.wavenumbers()
     return {
         **{name: ("diameter", values) for name, values in column.items()},
         "accuracy_status": ("diameter", *status),
+        "model_status": ("diameter", *flags(ModelStatus, known)),
         "fixed_focus_phase_slope_standard_error": ("diameter", error),
         "diameter_per_phase": ("diameter", 1 / slope),
         "diameter_per_phase_standard_error": ("diameter", error / slope**2),
@@ -129,23 +173,12 @@ def _variables(config: Config, diameters: Array, rows: Sequence[dict[str, Any]])
         **{
             # to a length they are per µm
             f"{name}_sensitivity": (
-                "diameter",
-                sensitivity[:, number] * (1.0 if name in INDICES else 1e-3),
+                "diameter", sensitivity[:, number] * (1e-3 if one.unit == "um" else 1.0),
             )
-            for number, name in enumerate(PARAMETERS)
+            for number, (name, one) in enumerate(parameters.items())
         },
+        "slope_shift": ("diameter", shift.sum(axis=1)),
         "budget": (("diameter", "parameter"), budget),
-        "budget_error": (("diameter", "parameter"), sensitivity_error * tolerance),
+        "budget_error": (("diameter", "parameter"), budget_error),
         "predicted_phase_slope": predicted_phase_slope(config.scene.swept_index, k[0], k[-1]),
-    }
-
-
-def summary(table: xr.Dataset) -> str:
-    """Return what a calibration found, in one line."""
-    slope, error = table["fixed_focus_phase_slope"], table["fixed_focus_phase_slope_standard_error"]
-    largest = str(table["parameter"].values[int(table["budget"].mean("diameter").values.argmax())])
-    return (
-        f"phase slope at a fixed focus {float(slope.min()):.3f} to {float(slope.max()):.3f} "
-        f"mrad/nm, standard error {float((error / slope).max()):.2%} or less, most of it from "
-        f"calibration.tolerances.{largest}"
-    )
+    }  # fmt: skip

@@ -1,16 +1,20 @@
-"""What of the instrument and the neuron may differ from what is believed, and how it is moved."""
+"""Instruments and neurons that differ from what is believed: moved, or drawn by the tolerances."""
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial.hermite_e import hermegauss
 
-from octsim.config.derive import changed, nested, part_of
-from octsim.config.grid import value_at
+from octsim.config.derive import changed
 from octsim.config.models import Config
-from octsim.config.units import format_length
-from octsim.instrument.build import detector_of
-from octsim.phase.derivatives import Array, stencil
+from octsim.phase.derivatives import Array
+from octsim.studies.calibration.parameters import PARAMETERS, parameters_of
+
+_NODES, _WEIGHTS = (part.round(15) + 0.0 for part in hermegauss(5))
+_WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
+_SIDES = np.array([-1.0, 1.0])
 
 
 class Place(NamedTuple):
@@ -23,69 +27,57 @@ class Place(NamedTuple):
     """Added to the height of the focus, µm."""
 
 
-class Parameter(NamedTuple):
-    """What is moved."""
+class Nodes(NamedTuple):
+    """Changes of a parameter that stand for all that it may be."""
 
-    step: float
-    """Largest change, for a derivative; µm where it is a length."""
-    key: str = ""
-    """Its key of the config; none for what is no part of one."""
-    least: float = -np.inf
-    most: float = np.inf
-
-
-_LEAST_NA = 1e-3
-PARAMETERS: Mapping[str, Parameter] = {
-    # of the neuron at rest: the focus is looked for by the greatest intensity, so it goes with it
-    "diameter": Parameter(2e-3),
-    "gap": Parameter(1e-3, "scene.gap", least=0.0),
-    "glass": Parameter(1e-3, "scene.refractive_index", least=1.0, most=10.0),
-    "water": Parameter(1e-3, "scene.refractive_index", least=1.0, most=10.0),
-    "neuron": Parameter(1e-3, "scene.refractive_index", least=1.0, most=10.0),
-    "focus": Parameter(4e-3),
-    "numerical_aperture": Parameter(3e-3, "objective.numerical_aperture", least=_LEAST_NA),
-    "detector_radius": Parameter(1e-3, "detector.core_diameter"),
-    "wavelength_min": Parameter(2e-4, "spectrum.wavelength.min"),
-    "wavelength_max": Parameter(2e-4, "spectrum.wavelength.max"),
-}
-"""Each by the name of its tolerance."""
-INDICES = ("glass", "water", "neuron", "numerical_aperture")
-"""Parameters without a unit; the others are lengths."""
+    offset: Array
+    """Increasing, with 0 among them, (N,)."""
+    weight: Array
+    """How much of the distribution each stands for, (N,); 1 in all."""
+    tolerance: float
+    """One standard deviation of it."""
 
 
-def value_of(config: Config, name: str) -> float:
-    """Return what a parameter is in a config; 0 for what is no part of one."""
-    if name == "detector_radius":
-        return detector_of(config).radius
-    key = _key(config, name)
-    return float(value_at(config, key)) if key else 0.0
+class Changes(NamedTuple):
+    """How a slope changes by a parameter that is not known."""
+
+    spread: float
+    """Standard deviation."""
+    shift: float
+    """Mean."""
+    error: float
+    """Estimated error of the root of the mean square."""
 
 
-def _key(config: Config, name: str) -> str:
-    """Return the key of a parameter: of an index and of a gap what the config's scene calls it."""
-    scene = config.scene
-    media = {
-        "glass": scene.objective_medium, "water": scene.host_medium, "neuron": scene.swept_medium,
-    }  # fmt: skip
-    if name in media:
-        return f"scene.refractive_index.{media[name]}"
-    return scene.swept_gap_key if name == "gap" else PARAMETERS[name].key
+def nodes_of(config: Config, name: str) -> Nodes:
+    """Return nodes of a parameter: Gauss and Hermite's for its normal deviates, as far as possible.
+
+    Of a tolerance of 0 they are those of a small one, and all of the weight is on 0.
+    """
+    one, tolerance = PARAMETERS[name], getattr(config.calibration.tolerances, name)
+    at, (least, most) = one.believed(config), one.limits(config)
+    scale = tolerance or one.step
+    reached = np.clip(scale * _NODES, min(least - at, 0.0), max(most - at, 0.0))
+    offset, place = np.unique(reached, return_inverse=True)
+    weight: Array = np.where(offset == 0, 1.0, 0.0)
+    if tolerance:
+        weight = np.bincount(place, _WEIGHTS).astype(np.float64)
+    return Nodes(offset, weight, tolerance)
 
 
-def offsets_of(config: Config, name: str) -> Array:
-    """Return five changes of a parameter, (5,), that leave it possible."""
-    return stencil(value_of(config, name), PARAMETERS[name].step, *limits(config, name))
+def changes_by(nodes: Nodes, slopes: Array) -> Changes:
+    """Return what a parameter makes of a slope that is known at its nodes, (N,)."""
+    from scipy.interpolate import KroghInterpolator
 
-
-def limits(config: Config, name: str) -> tuple[float, float]:
-    """Return the least and the most that a parameter may be, with the others within theirs."""
-    least, most = PARAMETERS[name].least, PARAMETERS[name].most
-    glass, aperture = config.scene.objective_index, config.objective.numerical_aperture
-    if name == "glass":
-        least = max(least, (glass + aperture) / 2)
-    if name == "numerical_aperture":
-        most = aperture + 0.49 * (glass - aperture)
-    return least, most
+    here = slopes[np.flatnonzero(nodes.offset == 0)[0]]
+    change = slopes - here
+    shift = float(nodes.weight @ change)
+    square = float(nodes.weight @ change**2)
+    # by the rule of three, on the polynomial through the nodes
+    ends = np.clip(np.sqrt(3) * nodes.tolerance * _SIDES, nodes.offset[0], nodes.offset[-1])
+    fewer = ((KroghInterpolator(nodes.offset, change)(ends)) ** 2).sum() / 6
+    spread = math.sqrt(max(square - shift**2, 0.0))
+    return Changes(spread, shift, abs(math.sqrt(square) - math.sqrt(float(fewer))))
 
 
 def moved(config: Config, changes: Mapping[str, float], law_slope: float) -> Place:
@@ -95,24 +87,20 @@ def moved(config: Config, changes: Mapping[str, float], law_slope: float) -> Pla
     """
     diameter = changes.get("diameter", 0.0)
     focus = law_slope * diameter + changes.get("focus", 0.0)
-    data, overlay = config.to_dict(), {}
+    overlays = []
     for name, by in changes.items():
-        key, least = _key(config, name), PARAMETERS[name].least
-        value = max(least, value_of(config, name) + by)  # whatever the last digit is rounded to
-        if name == "detector_radius":
-            value *= 2 * config.objective.magnification
-        if key:
-            overlay[key] = format_length(value) if isinstance(part_of(data, key), str) else value
-    return Place(
-        changed(config, *(nested(key, value) for key, value in overlay.items())), diameter, focus
-    )
+        one = PARAMETERS[name]
+        least, most = one.limits(config)
+        value = min(max(least, one.believed(config) + by), most)  # whatever the last digit is
+        overlays.append(one.overlay(config, value))
+    return Place(changed(config, *overlays), diameter, focus)
 
 
 def drawn(config: Config, generator: np.random.Generator, law_slope: float) -> Place:
     """Return an instrument and a neuron drawn normally by the tolerances, as far as possible."""
     changes = {}
-    for name in PARAMETERS:
+    for name, one in parameters_of(config).items():
         by = generator.normal(0.0, getattr(config.calibration.tolerances, name))
-        at, (least, most) = value_of(config, name), limits(config, name)
+        at, (least, most) = one.believed(config), one.limits(config)
         changes[name] = min(max(by, least - at), most - at)
     return moved(config, changes, law_slope)

@@ -11,7 +11,6 @@ from octsim.phase.derivatives import FRACTIONS, Array
 from octsim.schemes.fullwave.operators import Operators
 from octsim.schemes.light import AccuracyStatus
 from octsim.studies.design.settings import (
-    FILL_TOLERANCE,
     STEP,
     Band,
     configs_off,
@@ -57,7 +56,7 @@ def bench_of(config: Config, aperture: float) -> Bench:
         return [SharingInstrument(filled(one, scale * fill), operators) for fill in fills]
 
     return Bench(
-        each(base), each(base, 1 + FILL_TOLERANCE),
+        each(base), each(base, 1 + config.calibration.tolerances.fill),
         {name: each(moved) for name, moved in configs_off(base)},
     )  # fmt: skip
 

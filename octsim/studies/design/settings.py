@@ -17,8 +17,6 @@ ACCURACY = 1e-3
 """Of the spectra: it moves slopes over `STEP` by less than 0.1 %, as neighbours share its error."""
 STEP = 0.01
 """Half the difference of diameters that a slope is of, µm."""
-FILL_TOLERANCE = 0.05
-"""One standard deviation of the fill, relative to it."""
 CONFIGS = ("neuron", "water", "gap", "numerical_aperture")
 """Tolerances whose change is one of the config, but for the pupil."""
 PARAMETERS = ("diameter", "focus", "fill", *CONFIGS)

@@ -42,8 +42,8 @@ def design(config: Config, law: xr.Dataset | None = None, threads: int = 1) -> x
     """Search fill, focus, aperture, band and estimator for the least error of an expansion.
 
     Spectra are Maxwell's, whatever the run's scheme. The statistical error is that of one spectrum
-    by its photons; the systematic one that of the slope, by what `octsim.config.calibration`
-    and the fill's tolerance leave unknown, times the expansion.
+    by its photons; the systematic one that of the slope, by what ``calibration.tolerances``
+    leaves unknown, times the expansion.
 
     Parameters
     ----------

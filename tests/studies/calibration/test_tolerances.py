@@ -1,37 +1,106 @@
 """What is uncertain of an instrument: moved one by one, or drawn within its limits."""
 
+import math
+from typing import Any
+
 import numpy as np
 import pytest
 
+from octsim.config.light import FibreMode, GaussianFill
 from octsim.config.load import load_config
 from octsim.config.models import Config
-from octsim.studies.calibration.study import converged
-from octsim.studies.calibration.tolerances import (
-    PARAMETERS,
-    drawn,
-    moved,
-    offsets_of,
-    value_of,
-)
+from octsim.instrument.build import polarisation_of
+from octsim.optics.polarisation import jones_rows
+from octsim.studies.calibration.parameters import PARAMETERS, parameters_of
+from octsim.studies.calibration.scheme import converged
+from octsim.studies.calibration.tolerances import changes_by, drawn, moved, nodes_of
 
 LAW = 0.58
 
 
-def test_parameters_move_alone_and_only_where_they_can() -> None:
-    config = converged(load_config({"scene": {"gap": "0 nm"}}))
-    for name in PARAMETERS:
-        for by in offsets_of(config, name).tolist():
+def value_of(config: Config, name: str) -> float:
+    """Return what a parameter is in a config, of the pupil its width."""
+    if name != "fill":
+        return PARAMETERS[name].believed(config)
+    match config.pupil:
+        case GaussianFill(gaussian=width) | FibreMode(fibre=width):
+            return width
+    raise AssertionError(config.pupil)
+
+
+OVERLAYS: tuple[dict[str, Any], ...] = (
+    {"calibration": {"scheme": "paths"}},
+    {},
+    {"objective": {"pupil": {"gaussian": 0.5}}, "polarisation": {"input": "30 deg"},
+     "tracing": {"scheme": "fullwave"}},
+    {"polarisation": {"input": "left", "analyser": "10 deg"}, "tracing": {"scheme": "fullwave"},
+     "scene": {"cylinders": [{"medium": "neuron", "x": "0.1 um", "azimuth": "350 deg"}]}},
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("overlay", OVERLAYS)
+def test_parameters_move_alone_and_only_where_they_can(overlay: dict[str, Any]) -> None:
+    config = converged(load_config({"scene": {"gap": "0 nm"}}, overlay))
+    seen = parameters_of(config)
+    by_rays = config.tracing.scheme == "paths"
+    assert set(PARAMETERS) - set(seen) == (
+        {"fill", "polarisation", "offset"} if by_rays else {"detector_radius"}
+    )
+    for name in seen:
+        for by in nodes_of(config, name).offset.tolist():
             place = moved(config, {name: by}, LAW)
             if name in ("diameter", "focus"):
                 assert place.config == config
                 assert (place.diameter, place.focus) == (
                     (by, LAW * by) if name == "diameter" else (0.0, by)
                 )
-            else:
-                assert value_of(place.config, name) == pytest.approx(value_of(config, name) + by)
-                for other in set(PARAMETERS) - {name}:
-                    assert value_of(place.config, other) == value_of(config, other)
-    assert min(offsets_of(config, "gap")) == 0
+                continue
+            rest = value_of(config, name)
+            expected = rest * (1 + by) if name == "fill" else rest + by
+            turn = np.pi if name == "polarisation" else np.inf  # the same after half a turn
+            assert abs(math.remainder(value_of(place.config, name) - expected, turn)) < 1e-9
+            for other in set(seen) - {name}:
+                assert value_of(place.config, other) == value_of(config, other)
+    assert nodes_of(config, "gap").offset[0] == 0
+    assert nodes_of(config, "gap").weight[0] == pytest.approx(0.5 + 8 / 30)  # of all below
+
+
+def test_a_tolerance_of_zero_moves_nothing_and_still_has_a_sensitivity() -> None:
+    config = converged(load_config({"calibration": {"tolerances": {"neuron": 0}}}))
+    nodes = nodes_of(config, "neuron")
+    assert np.ptp(nodes.offset) > 0
+    assert changes_by(nodes, 3 * nodes.offset) == (0.0, 0.0, 0.0)
+
+
+def test_the_changes_by_a_tolerance_are_those_of_many_draws() -> None:
+    config = converged(load_config({"calibration": {"tolerances": {"offset": "0.3 um"}}}))
+    nodes = nodes_of(config, "offset")
+    off = np.random.default_rng(1).normal(0.0, 0.3, 1_000_000)
+    for polynomial in ((0, 2.0), (0, 0, 2.5), (1, -1.0, 2.0), (0, 0, 1, 0.5, -0.3)):
+        shape = np.polynomial.Polynomial(polynomial)
+        change = shape(off) - shape(0)
+        found = changes_by(nodes, shape(nodes.offset))
+        assert found.spread == pytest.approx(change.std(), rel=0.02)
+        assert found.shift == pytest.approx(change.mean(), rel=0.02, abs=2e-3)
+        assert found.error < 0.1 * found.spread
+
+
+def test_light_that_is_half_across_and_half_along_is_as_light_between_them() -> None:
+    """What the tolerance of unpolarised and circular light begins from is that light itself."""
+    generator = np.random.default_rng(2)
+    fields = generator.normal(size=(2, 4)) + 1j * generator.normal(size=(2, 4))
+    for given in ("unpolarised", "left", "right"):
+        config = converged(load_config(
+            {"polarisation": {"input": given}, "tracing": {"scheme": "fullwave"},
+             "scene": {"cylinders": [{"medium": "neuron", "azimuth": "20 deg"}]}}
+        ))  # fmt: skip
+        same = moved(config, {"polarisation": 0.0}, LAW).config
+        assert same.polarisation.input == pytest.approx(np.radians(20 + 45))
+        intensity = [
+            (np.abs(jones_rows(polarisation_of(one), np.radians(20)) @ fields) ** 2).mean(axis=0)
+            for one in (config, same)
+        ]
+        assert intensity[1] == pytest.approx(intensity[0], rel=1e-12)
 
 
 def test_what_is_drawn_scatters_by_the_tolerances() -> None:

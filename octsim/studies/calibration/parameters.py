@@ -1,0 +1,173 @@
+"""What of the instrument and the neuron may differ from what is believed: one row for each."""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from octsim.config.derive import nested, part_of
+from octsim.config.grid import value_at
+from octsim.config.light import FibreMode, GaussianFill
+from octsim.config.models import Config
+from octsim.config.scheme import scheme_of
+from octsim.config.units import format_angle, format_length
+from octsim.instrument.build import detector_of
+from octsim.schemes.table import Ability
+
+Overlay = Mapping[str, Any]
+_LEAST_NA = 1e-3
+
+
+def _anything(_: Config) -> tuple[float, float]:
+    return -math.inf, math.inf
+
+
+class Parameter(NamedTuple):
+    """Something that may be off, and how a config is changed to have it so."""
+
+    step: float
+    """Change for a derivative, where its tolerance is 0."""
+    believed: Callable[[Config], float]
+    """Returns what it is in a config."""
+    overlay: Callable[[Config, float], Overlay]
+    """Returns what makes it some value in a config."""
+    limits: Callable[[Config], tuple[float, float]] = _anything
+    """Returns the least and the most that it may be, with the others within theirs."""
+    counts: Callable[[Config], bool] = lambda _: True
+    """Returns whether a config's scheme sees it."""
+    unit: str = "um"
+    """um, rad, or 1."""
+
+
+def _keyed(step: float, key_of: Callable[[Config], str], **others: Any) -> Parameter:
+    """Return a parameter that is a key of the config."""
+
+    def overlay(config: Config, value: float) -> Overlay:
+        key = key_of(config)
+        as_text = isinstance(part_of(config.to_dict(), key), str)
+        return nested(key, format_length(value) if as_text else value)
+
+    def believed(config: Config) -> float:
+        return float(value_at(config, key_of(config)))
+
+    return Parameter(step, believed, overlay, **others)
+
+
+def _index(medium_of: Callable[[Config], str], **others: Any) -> Parameter:
+    def key_of(config: Config) -> str:
+        return f"scene.refractive_index.{medium_of(config)}"
+
+    return _keyed(1e-3, key_of, **{"limits": lambda _: (1.0, 10.0), "unit": "1"} | others)
+
+
+def _above_aperture(index: float, aperture: float) -> tuple[float, float]:
+    """Return the limits of an index that a numerical aperture stays below."""
+    return max(1.0, (index + aperture) / 2), 10.0
+
+
+def _glass_limits(config: Config) -> tuple[float, float]:
+    return _above_aperture(config.scene.objective_index, config.objective.numerical_aperture)
+
+
+def _water_limits(config: Config) -> tuple[float, float]:
+    if not _of_waves(config):
+        return 1.0, 10.0
+    return _above_aperture(config.scene.host_index, config.objective.numerical_aperture)
+
+
+def _aperture_limits(config: Config) -> tuple[float, float]:
+    scene, aperture = config.scene, config.objective.numerical_aperture
+    above = [scene.objective_index, *([scene.host_index] if _of_waves(config) else [])]
+    return _LEAST_NA, aperture + 0.49 * (min(above) - aperture)
+
+
+def _of_waves(config: Config) -> bool:
+    return scheme_of(config).light == "waves"
+
+
+def _can(ability: Ability) -> Callable[[Config], bool]:
+    return lambda config: ability in scheme_of(config).honours
+
+
+def _nothing(_config: Config, _value: float) -> Overlay:
+    return {}
+
+
+def _core(config: Config, radius: float) -> Overlay:
+    diameter = 2 * config.objective.magnification * radius
+    return nested("detector.core_diameter", format_length(diameter))
+
+
+def _filled(config: Config, times: float) -> Overlay:
+    match config.pupil:
+        case GaussianFill(gaussian=fill):
+            return nested("objective.pupil", {"gaussian": times * fill})
+        case FibreMode(fibre=diameter):
+            return nested("objective.pupil", {"fibre": format_length(diameter * times)})
+        case _:
+            return {}
+
+
+def _is_filled(config: Config) -> bool:
+    return _can(Ability.PUPIL)(config) and config.pupil != "uniform"
+
+
+def _direction(config: Config) -> float:
+    """Return the angle, rad, of linear input, or else of the analyser.
+
+    Without either half of the light is across the neuron and half along it, which to a detector
+    of both is the same as linear light at 45° to it.
+    """
+    given = config.polarisation
+    if isinstance(given.input, float):
+        return given.input
+    if given.analyser is not None:
+        return given.analyser
+    azimuth = next(one.azimuth for one in config.scene.cylinders if one.diameter is None)
+    return azimuth + math.pi / 4
+
+
+def _directed(config: Config, angle: float) -> Overlay:
+    given = config.polarisation
+    by_analyser = given.analyser is not None and not isinstance(given.input, float)
+    # a direction is the same after half a turn
+    turned = format_angle(math.remainder(angle, math.pi))
+    return nested(f"polarisation.{'analyser' if by_analyser else 'input'}", turned)
+
+
+def _offset_key(config: Config) -> str:
+    return f"{config.scene.swept[0]}.x"
+
+
+PARAMETERS: Mapping[str, Parameter] = {
+    # of the neuron at rest: its focus goes with it
+    "diameter": Parameter(
+        2e-3, lambda _: 0.0, _nothing, lambda c: (-0.9 * c.calibration.diameters.start, math.inf)
+    ),
+    "gap": _keyed(1e-3, lambda c: c.scene.swept_gap_key, limits=lambda _: (0.0, math.inf)),
+    "glass": _index(lambda c: c.scene.objective_medium, limits=_glass_limits),
+    "water": _index(lambda c: c.scene.host_medium, limits=_water_limits),
+    "neuron": _index(lambda c: c.scene.swept_medium),
+    "focus": Parameter(4e-3, lambda _: 0.0, _nothing),
+    "numerical_aperture": _keyed(
+        3e-3, lambda _: "objective.numerical_aperture", limits=_aperture_limits, unit="1"
+    ),
+    "detector_radius": Parameter(
+        1e-3, lambda config: detector_of(config).radius, _core,
+        counts=lambda config: "detector" in scheme_of(config).instrument,
+    ),
+    "fill": Parameter(
+        0.01, lambda _: 1.0, _filled, lambda _: (1e-3, 1e3), counts=_is_filled, unit="1"
+    ),
+    "polarisation": Parameter(
+        0.04, _direction, _directed, counts=_can(Ability.POLARISATION), unit="rad"
+    ),
+    "offset": _keyed(0.01, _offset_key, counts=_can(Ability.OFF_AXIS)),
+    "wavelength_min": _keyed(2e-4, lambda _: "spectrum.wavelength.min"),
+    "wavelength_max": _keyed(2e-4, lambda _: "spectrum.wavelength.max"),
+}  # fmt: skip
+"""Each by the name of its tolerance."""
+
+
+def parameters_of(config: Config) -> Mapping[str, Parameter]:
+    """Return the parameters that the scheme of a config sees, by their names."""
+    return {name: one for name, one in PARAMETERS.items() if one.counts(config)}

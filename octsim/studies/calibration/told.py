@@ -1,0 +1,61 @@
+"""What a calibration says of itself: what it found, and where it is not what one would want."""
+
+import numpy as np
+import xarray as xr
+
+from octsim.config.models import Config
+from octsim.datasets.versions import recorded_config
+from octsim.stages import spectra
+from octsim.stages.beside_maxwell import pupil_name
+from octsim.studies.calibration.scheme import MODEL, ModelStatus, rays_because
+
+
+def summary(table: xr.Dataset) -> str:
+    """Return what a calibration found, in one line, with what its number is of."""
+    config = Config.model_validate(recorded_config(table.attrs))
+    slope, error = table["fixed_focus_phase_slope"], table["fixed_focus_phase_slope_standard_error"]
+    share = float((error / slope).max())
+    sure = f"{share:.2%} or less" if np.isfinite(share) else "not known everywhere"
+    line = f"{float(table['slope']):.3g} d {1e3 * float(table['intercept']):+.3g} nm"
+    waves = f"Maxwell's equations ({pupil_name(config)} pupil)"
+    scheme = "light paths" if rays_because(config) else waves
+    return (
+        f"phase slope by {scheme}, at a fixed focus (held at {line}) and by the estimator "
+        f"{config.calibration.estimator}: {float(slope.min()):.3f} to {float(slope.max()):.3f} "
+        f"mrad/nm, standard error {sure}, most of it {_largest(table)}"
+    )
+
+
+def _largest(table: xr.Dataset) -> str:
+    """Say what the standard error is mostly of."""
+    parts = {
+        str(name): float(table["budget"].sel(parameter=name).mean("diameter"))
+        for name in table["parameter"].values
+    }
+    parts["interpolation"] = float(table["interpolation_error"].mean())
+    largest = max(parts, key=lambda name: (parts[name] != parts[name], parts[name]))
+    others = {MODEL: "as far as rays are off", "interpolation": "between calibration.diameters"}
+    return others.get(largest, f"from calibration.tolerances.{largest}")
+
+
+def doubts(table: xr.Dataset) -> list[str]:
+    """Say, a line each, where a calibration is not what one would want."""
+    said, status = spectra.doubts(table), table["model_status"].values
+    compared, unknown = (status == one for one in (ModelStatus.COMPARED, ModelStatus.NOT_COMPARED))
+    if not (compared.any() or unknown.any()):
+        return said
+    reason = rays_because(Config.model_validate(recorded_config(table.attrs)))
+    if compared.any():
+        off = (table["fixed_focus_phase_slope"] / table["maxwell_phase_slope"] - 1)[compared]
+        said.append(
+            f"the slope is by rays ({reason}), {float(off.min()):+.1%} to {float(off.max()):+.1%} "
+            "from Maxwell's equations, which its standard error has as budget 'model'; leave "
+            "calibration.scheme out"
+        )
+    if unknown.any():
+        said.append(
+            f"the slope is by rays ({reason}) and is not compared with Maxwell's equations at "
+            f"{unknown.sum()} of {unknown.size} diameters, so its standard error is not known "
+            "there (NaN); where it was compared it is often 10 % off (docs/validity.md)"
+        )
+    return said
