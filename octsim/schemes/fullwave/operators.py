@@ -2,6 +2,7 @@
 
 import threading
 from collections import OrderedDict
+from concurrent.futures import Future
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -57,7 +58,7 @@ class Operators:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._kept: OrderedDict[tuple[object, ...], Operator] = OrderedDict()
+        self._kept: OrderedDict[tuple[object, ...], Future[Operator]] = OrderedDict()
 
     def of(
         self, scene: CylinderOnPlane, aperture: float, k: NDArray[np.float64], orders: Orders
@@ -66,10 +67,18 @@ class Operators:
         # the offset and the nodes over k_x are the illumination's
         key = scene._replace(offset=0.0), aperture, k.tobytes(), orders._replace(across=0)
         with self._lock:
-            found = self._kept.pop(key, None)
-            if found is None:
-                found = operator(scene, aperture, k, orders)
-            self._kept[key] = found
+            found, wanted = self._kept.pop(key, None), Future[Operator]()
+            self._kept[key] = found or wanted
             while len(self._kept) > _KEPT:
                 self._kept.popitem(last=False)
-        return found
+        if found:
+            return found.result()
+        # without the lock, so that threads make theirs at the same time
+        try:
+            wanted.set_result(operator(scene, aperture, k, orders))
+        except BaseException as error:
+            with self._lock:
+                self._kept.pop(key, None)  # whoever asks next tries again
+            wanted.set_exception(error)
+            raise
+        return wanted.result()

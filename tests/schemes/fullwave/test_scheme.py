@@ -4,6 +4,7 @@ import hashlib
 import os
 import subprocess
 import sys
+import threading
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -18,6 +19,8 @@ from octsim.instrument.build import optics_of, scene_of
 from octsim.instrument.point_store import PointStore
 from octsim.instrument.points import Points
 from octsim.schemes.fullwave import operators
+from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
+from octsim.schemes.fullwave.orders import Orders
 from octsim.schemes.fullwave.scheme import tracer
 from octsim.schemes.light import LightAt, Waves
 
@@ -106,3 +109,31 @@ def test_an_aperture_at_the_waters_index_is_refused() -> None:
         optics = optics_of(CONFIG)._replace(numerical_aperture=aperture)
         with pytest.raises(OctsimError, match=r"numerical_aperture: 1\.\d+ given, .* below"):
             tracer(optics, {"accuracy": 1e-3})(scene_of(CONFIG, 1.2), 0.7)
+
+
+def test_threads_make_their_operators_at_the_same_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    both, operator = threading.Barrier(2, timeout=30), operators.operator
+
+    def met(*given: object) -> operators.Operator:
+        both.wait()  # broken, and raises, if the other thread does not come
+        return operator(*given)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(operators, "operator", met)
+    shared, orders = operators.Operators(), Orders(8, 8, 20, 6)
+    k = np.array([8.0])
+    scenes = [CylinderOnPlane(1.52, 1.33, 1.39, 0.005, d) for d in (0.5, 0.6)]
+    list(each(lambda one: shared.of(one, 1.0, k, orders), scenes, 2))
+
+
+def test_an_operator_that_failed_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    given = CylinderOnPlane(1.52, 1.33, 1.39, 0.005, 0.5), 1.0, np.array([8.0]), Orders(8, 8, 20, 6)
+    shared = operators.Operators()
+
+    def fails(*_: object) -> operators.Operator:
+        raise MemoryError
+
+    with monkeypatch.context() as patched:
+        patched.setattr(operators, "operator", fails)
+        with pytest.raises(MemoryError):
+            shared.of(*given)
+    assert shared.of(*given).k is given[2]
