@@ -63,6 +63,11 @@ def slopes(found: xr.Dataset) -> str:
     return table(head, rows)
 
 
+def signed(value: float) -> str:
+    """Write a sensitivity; what is but rounding is 0."""
+    return "0" if abs(value) < 1e-9 else f"{value:+.3g}".replace("e-0", "e-")
+
+
 def budget(found: xr.Dataset, config: Config) -> str:
     """Write the sensitivities at some diameters, and what the tolerances make of them."""
     ends = (SHOWN[0], EXAMPLE[1], SHOWN[-1])
@@ -77,7 +82,7 @@ def budget(found: xr.Dataset, config: Config) -> str:
         rows.append([
             name.replace("_", " "),
             TOLERANCE[unit].format(1e3 * tolerance, np.degrees(tolerance), tolerance),
-            *(f"{one:+.3g}".replace("e-0", "e-") for one in sensitivity),
+            *map(signed, sensitivity),
             UNIT[unit],
             *(f"{100 * float(shares.sel(diameter=d, method='nearest')):.3f}" for d in ends),
             f"{float(checked):.0e}",
@@ -217,8 +222,8 @@ octsim.expansion(0.011, 1.4, calibration)  # rad, µm: nm, with both errors
 
 An action potential does not move the objective. The thesis's slope is the change of the phase from
 one neuron to a thicker one, with the focus moved along the law in between; what an experiment sees
-is the change at a focus and a gap that stay where they are. The two differ by {more}, and both
-depend on the diameter: the held slope is {least} to {greatest} mrad/nm.
+is the change at a focus and a gap that stay where they are. That slope is {more} from the one that
+follows, and both depend on the diameter: held, it is {least} to {greatest} mrad/nm.
 
 {slopes}
 Slopes by rays (light paths to 1e-8) are {by_rays} from Maxwell's: rays have neither the diffraction
@@ -246,8 +251,8 @@ slope(held) + {law} ∂φ/∂focus, is obeyed by the columns to {chain} mrad/nm.
   are not solved (an NA at or above the index of water) the calibration is by rays of itself, says
   why, and states no standard error: it is not known (`model_status`, and NaN).
 - **Curvature**: at a held focus the slope itself changes as the neuron swells. `expansion` solves φ
-  = s δ + c δ²/2; without c, 10 nm would be wrong by up to {straight} %. Beyond {largest} nm it
-  refuses.
+  = s δ + c δ²/2; without c, 10 nm would be wrong by up to {straight} %. What the third order leaves
+  is below the standard error; beyond {largest} nm it refuses.
 
 ## How sure it is
 
@@ -259,14 +264,14 @@ added in quadrature, with the errors of the interpolation and of the finite diff
 added as they are (`slope_shift`, {shift} of the slope) and then in quadrature.
 
 {budget}
-On average most is by {most_shares}. The table takes it that the focus is looked for on the neuron
-itself and found within the tolerance; a diameter at rest that is misjudged then moves the focus
-with it. By waves the total intensity mostly has no peak at the law's focus; what does is in
-[design.md](design.md). A neuron off the axis has no first derivative, as it is the same to both
-sides, and still counts, most of all by its tails: 150 nm off can be a quarter of the slope. `fill`
-is relative, of what fills the pupil. `polarisation` turns linear input, or else an analyser;
-without either it makes the light linear, by the sine of twice the angle. By rays these three are
-not seen, and `detector_radius` is.
+On average most is by {most_shares}.
+The table takes it that the focus is looked for on the neuron itself and found within the tolerance;
+a diameter at rest that is misjudged then moves the focus with it. By waves the total intensity
+mostly has no peak at the law's focus; what has is in [design.md](design.md). A neuron off the axis
+has no first derivative, as it is the same to both sides, and still counts, most of all by its tails
+(the round trips below). `fill` is relative, of what fills the pupil. `polarisation` turns linear
+input, or else an analyser; without either it makes the light linear, by the sine of twice the
+angle. By rays these three are not seen, and `detector_radius` is.
 
 ## A series of your own
 

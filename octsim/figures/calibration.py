@@ -1,5 +1,6 @@
 """The calibration: the slope at a fixed focus beside the thesis's, and what makes its error."""
 
+import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -50,14 +51,16 @@ def _draw_slopes(axes: Axes, table: xr.Dataset) -> None:
     )  # fmt: skip
     axes.plot(diameter, slope, color=BLUE, linewidth=2, label="focus held: the calibration")
     for name, colour, line, text in _SLOPES:
-        if table[name].isnull().all() or (table[name] == slope).all():
+        if table[name].isnull().all() or np.allclose(table[name], slope, rtol=1e-4):
             continue  # not solved, or the calibration itself
         axes.plot(diameter, table[name], color=colour, linestyle=line, label=text)
     predicted = float(table["predicted_phase_slope"])
     axes.axhline(predicted, color=BLACK, linestyle="-.", label=f"prediction {predicted:.2f}")
     axes.set_xlabel(label(diameter, "diameter at rest"))
     axes.set_ylabel(label(slope, "phase slope"))
-    axes.legend(fontsize=8)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low - 0.4 * (high - low), high)  # room for the legend
+    axes.legend(fontsize=8, ncols=2, loc="lower center")
 
 
 def _draw_budget(axes: Axes, table: xr.Dataset) -> None:
