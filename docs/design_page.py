@@ -48,7 +48,7 @@ def design_page(found: xr.Dataset) -> str:
         expansion=f"{1e3 * parse_length(given['expansion']):g} nm",
         aperture=f"{own:g}", band=band, draws=draws,
         of_draws=f"{100 / np.sqrt(2 * (draws - 1)):.0f}", step=f"{1e3 * STEP:g}",
-        fill_tolerance=f"{100 * config.calibration.tolerances.fill:g}", accuracy=f"{ACCURACY:g}",
+        fill_tolerance=f"{100 * config['calibration']['tolerances']['fill']:g}", accuracy=f"{ACCURACY:g}",
         launched_photons=f"{LAUNCHED:.0e}",
         missed=int((found["accuracy_status"] != 0).sum()), settings=found["accuracy_status"].size,
         reached=f"{float(found['intensity_error'].max()):.1e}",

@@ -1,5 +1,6 @@
 """What accuracy costs: error over cost, the efficient frontier, the presets and the run itself."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -60,6 +61,9 @@ def truth_figure(measured: xr.Dataset) -> Figure:
     figure, _ = _panels(measured, _TRUTH)
     said = f"Errors from Maxwell's equations\n{measured.attrs['maxwell']}"
     return _finished(figure, title(measured, said))
+
+
+_LEVEL = 0.3  # decades
 
 
 def _panels(measured: xr.Dataset, panels: _Panels) -> tuple[Figure, Sequence[Axes]]:
@@ -134,6 +138,7 @@ def _law(axes: Axes, measured: xr.Dataset) -> None:
 
 def _name(axes: Axes, measured: xr.Dataset, cost: str, error: str) -> None:
     """Ring and name the presets and the run's own setting."""
+    named: list[float] = []
     for number in range(measured.sizes["setting"]):
         one = measured.isel(setting=number)
         own, preset = bool(one["default"] == 1), str(one["preset"].item())
@@ -146,8 +151,12 @@ def _name(axes: Axes, measured: xr.Dataset, cost: str, error: str) -> None:
             color=colour, zorder=4,
         )  # fmt: skip
         text = f"{preset}, this run" if own and preset else preset or "this run"
-        # presets are on the frontier: what is to their left is empty
+        # presets are on the frontier: what is to their left is empty, or below those that are level
+        level = sum(abs(math.log10(place[1] / other)) < _LEVEL for other in named)
+        if not own:
+            named.append(place[1])
         axes.annotate(
-            text, place, xytext=(9, 5) if own else (-9, -9), textcoords="offset points",
+            text, place, xytext=(9, 5) if own else (-9, -9 - 12 * level),
+            textcoords="offset points",
             ha="left" if own else "right", fontsize=9, color=colour, fontweight="bold", zorder=5,
         )  # fmt: skip
