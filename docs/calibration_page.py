@@ -202,7 +202,8 @@ would have said {thesis_example}, rays at a held focus {rays_example}.
 A slope is nothing without what it is of. This one is by Maxwell's equations (scheme `fullwave`,
 whatever the run's own), a pupil that the mode of a fibre fills (5 µm, at the magnification),
 unpolarised light, the focus held where the law puts it, and the estimator `sinusoid` with the
-frequency held. [design.md](design.md) says which pupil, focus and estimator know an expansion best:
+frequency held. For the pupil of a lab: `tracing: {{preset: exact}}` and `objective: {{pupil: {{gaussian:
+0.5}}}}`. [design.md](design.md) says which pupil, focus and estimator know an expansion best:
 a pupil that is less filled has a slope that moves less with the diameter.
 
 ```sh
@@ -257,11 +258,11 @@ slope(held) + {law} ∂φ/∂focus, is obeyed by the columns to {chain} mrad/nm.
 ## How sure it is
 
 `calibration.tolerances` states how well each thing is known, as one standard deviation. The slope
-is found again with each thing off, at the five nodes of Gauss and Hermite's rule for its normal
-deviates, within ±2.9 tolerances. That gives its sensitivity, how far it scatters and by how much it
-is shifted as a mean; the last column is how far a rule of three is from that of five. Scatters are
-added in quadrature, with the errors of the interpolation and of the finite differences; shifts are
-added as they are (`slope_shift`, {shift} of the slope) and then in quadrature.
+is differentiated by each, and is found with each off at the five nodes of Gauss and Hermite's rule
+for its normal deviates, within ±2.9 tolerances (what is beyond a limit is put at it). That says how
+far it scatters and by how much it is shifted as a mean; the last column is how far a rule of three
+is from that of five. Scatters are added in quadrature, with these differences, the errors of the
+interpolation and of the finite differences; shifts are added as they are (`slope_shift`, {shift} of the slope) and then in quadrature.
 
 {budget}
 On average most is by {most_shares}.

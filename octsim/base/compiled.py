@@ -23,9 +23,22 @@ def _sources(function: Callable[..., Any]) -> tuple[str | Path, ...]:
     """Return the module of a function, and the files of the functions that it is closed over."""
     file = Path(function.__code__.co_filename)
     own = function.__module__ if PACKAGE in file.parents else file
-    held = (cell.cell_contents for cell in function.__closure__ or ())
-    parts = (Path(part.__code__.co_filename) for part in held if isinstance(part, FunctionType))
-    return own, *parts
+    held = (part for part in _held(function) if isinstance(part, FunctionType))
+    return own, *(Path(part.__code__.co_filename) for part in held)
+
+
+def _held(function: Callable[..., Any]) -> list[object]:
+    """Return what a function is closed over."""
+    return [cell.cell_contents for cell in function.__closure__ or ()]
+
+
+def _named(held: object) -> str:
+    """Return what tells a function or a plain value that another is closed over from others."""
+    if isinstance(held, tuple):
+        return f"({', '.join(map(_named, held))})"
+    if isinstance(held, FunctionType):
+        return f"{held.__module__}.{held.__qualname__}"
+    return repr(held) if isinstance(held, bool | int | float | str) else ""
 
 
 def _digest(function: Callable[..., Any]) -> str:
@@ -33,6 +46,7 @@ def _digest(function: Callable[..., Any]) -> str:
     settings: Any = numba.config
     parts = (
         source_digest(*_sources(function)),
+        *map(_named, _held(function)),
         platform.python_version(),
         version("numba"),
         version("llvmlite"),

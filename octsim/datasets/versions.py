@@ -29,10 +29,14 @@ _RENAMED: Mapping[str, Mapping[str, str]] = {
 }
 
 
+_THEN = {"calibration": {"scheme": "paths"}}
+"""What was done before there was a key for it, where that is not the default."""
+
+
 def recorded_config(attributes: Mapping[str, Any]) -> dict[str, Any]:
     """Return the config that a dataset's attributes hold, as plain data, with every key of today.
 
-    Keys that the config had no name for yet are at their defaults, which do what was done then.
+    Keys that the config had no name for yet do what was done then: most are at their defaults.
 
     Raises
     ------
@@ -41,7 +45,7 @@ def recorded_config(attributes: Mapping[str, Any]) -> dict[str, Any]:
     """
     try:
         recorded = json.loads(attributes["config"])
-        return Config.model_validate(merge(Config().to_dict(), recorded)).to_dict()
+        return Config.model_validate(merge(merge(Config().to_dict(), _THEN), recorded)).to_dict()
     except ValidationError as error:
         raise ValueError(f"its config: {explain(error.errors()[0])}") from None
     except (KeyError, TypeError, AttributeError, ValueError, RecursionError):

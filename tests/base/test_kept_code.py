@@ -283,16 +283,13 @@ def make(part, count):
 
 
 def test_functions_that_processes_made_apart_of_one_code_work_together(tmp_path: Path) -> None:
-    kept, head = tmp_path / "kept", "from made import make; "
+    kept, head = tmp_path / "kept", "from made import make; import parts; "
     (tmp_path / "made.py").write_text(MADE, encoding="utf-8")
-    makes = []
+    parts, makes = "from numba.extending import register_jitable\n", []
     for name, count in (("twice", 2), ("thrice", 3)):
-        (tmp_path / f"{name}.py").write_text(
-            "from numba.extending import register_jitable\n"
-            f"@register_jitable\ndef {name}(x):\n    return {count} * x\n",
-            encoding="utf-8",
-        )
-        makes.append(f"from {name} import {name}; print(*make({name}, {count})(2.0))")
+        parts += f"@register_jitable\ndef {name}(x):\n    return {count} * x\n"
+        makes.append(f"print(*make(parts.{name}, {count})(2.0))")
+    (tmp_path / "parts.py").write_text(parts, encoding="utf-8")
     alone = [said(run(tmp_path, kept, head + code))[0] for code in makes]
     assert alone == ["[4. 4.] [4. 4.]", "[6. 6. 6.] [6 6 6]"]
     for both in (makes, makes[::-1]):

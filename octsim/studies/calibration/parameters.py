@@ -25,7 +25,7 @@ class Parameter(NamedTuple):
     """Something that may be off, and how a config is changed to have it so."""
 
     step: float
-    """Change for a derivative, where its tolerance is 0."""
+    """Largest change, for a derivative."""
     believed: Callable[[Config], float]
     """Returns what it is in a config."""
     overlay: Callable[[Config, float], Overlay]
@@ -102,7 +102,8 @@ def _filled(config: Config, times: float) -> Overlay:
         case GaussianFill(gaussian=fill):
             return nested("objective.pupil", {"gaussian": times * fill})
         case FibreMode(fibre=diameter):
-            return nested("objective.pupil", {"fibre": format_length(diameter * times)})
+            # a wider mode fills less of the pupil
+            return nested("objective.pupil", {"fibre": format_length(diameter / times)})
         case _:
             return {}
 
@@ -156,7 +157,7 @@ PARAMETERS: Mapping[str, Parameter] = {
         counts=lambda config: "detector" in scheme_of(config).instrument,
     ),
     "fill": Parameter(
-        0.01, lambda _: 1.0, _filled, lambda _: (1e-3, 1e3), counts=_is_filled, unit="1"
+        0.01, lambda _: 1.0, _filled, lambda _: (0.05, 20.0), counts=_is_filled, unit="1"
     ),
     "polarisation": Parameter(
         0.04, _direction, _directed, counts=_can(Ability.POLARISATION), unit="rad"

@@ -15,7 +15,7 @@ from octsim.phase.estimators.series import series_phases
 from octsim.phase.estimators.visible import require_fringe
 from octsim.schemes.light import AccuracyStatus
 from octsim.studies.calibration.parameters import parameters_of
-from octsim.studies.calibration.tolerances import Nodes, changes_by, moved, nodes_of
+from octsim.studies.calibration.tolerances import Nodes, changes_by, moved, nodes_of, offsets_of
 from octsim.studies.sides import side_slopes
 
 _CURVATURE_STEP = 4e-3  # µm
@@ -48,6 +48,10 @@ class Varied(NamedTuple):
     nodes: Nodes
     placed: Sequence[Placed]
     """The instrument at each of N nodes."""
+    offsets: Array
+    """Small changes, (5,)."""
+    beside: Sequence[Placed]
+    """The instrument at each of them."""
 
 
 class Bench(NamedTuple):
@@ -96,11 +100,15 @@ def bench_of(
         if not by:
             return Placed(own)
         at = moved(converged, {name: by}, law_slope)
-        return Placed(Instrument(at.config, points), at.diameter, at.focus)
+        same = at.config == converged
+        return Placed(own if same else Instrument(at.config, points), at.diameter, at.focus)
 
     def varied(name: str) -> Varied:
-        nodes = nodes_of(converged, name)
-        return Varied(nodes, [placed(name, by) for by in nodes.offset.tolist()])
+        nodes, offsets = nodes_of(converged, name), offsets_of(converged, name)
+        at_nodes, beside = (
+            [placed(name, by) for by in changes.tolist()] for changes in (nodes.offset, offsets)
+        )
+        return Varied(nodes, at_nodes, offsets, beside)
 
     return Bench(
         own,
@@ -153,7 +161,7 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
     # nothing is off in the middle of each
     here = pair(Placed(own))
     varied = [
-        [here if placed == Placed(own) else pair(placed) for placed in one.placed]
+        [here if placed == Placed(own) else pair(placed) for placed in (*one.placed, *one.beside)]
         for one in bench.varied.values()
     ]
     accurate = [fixed, following, focused, *bent, *chain.from_iterable(varied)]
@@ -175,11 +183,11 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
         return np.array([pair_slope(pair) for pair in pairs])
 
     slope = phase_slope(fixed, bench.processing)
-    moves = [
-        (one.nodes, pair_slopes(pairs))
-        for one, pairs in zip(bench.varied.values(), varied, strict=True)
-    ]
-    changes = [changes_by(nodes, values) for nodes, values in moves]
+    changes, sensitivity = [], []
+    for one, pairs in zip(bench.varied.values(), varied, strict=True):
+        at_nodes, beside = np.split(pair_slopes(pairs), [one.nodes.offset.size])
+        changes.append(changes_by(one.nodes, at_nodes))
+        sensitivity.append(derivative(one.offsets, beside).value)
     by_side = side_slopes(own.light, diameter, focus, float((k[0] + k[-1]) / 2), step)
     return {
         **{f"{side}_side_phase_slope": of_side for side, of_side in by_side.items()},
@@ -191,7 +199,7 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
         "fft_following_phase_slope": phase_slope(following, bench.fft).value,
         **{name: slope_of(Placed(other)) for name, other in bench.others.items()},
         "phase_curvature": derivative(bends, pair_slopes(bent)).value / 1e3,  # per nm
-        "sensitivity": np.array([derivative(nodes.offset, at).value for nodes, at in moves]),
+        "sensitivity": np.array(sensitivity),
         "spread": np.array([one.spread for one in changes]),
         "shift": np.array([one.shift for one in changes]),
         "budget_error": np.array([one.error for one in changes]),

@@ -33,7 +33,7 @@ from octsim.studies.calibration.slopes import bench_of, slopes_at
 
 RAYS = 3000
 """The thesis's rays, whose slope over such steps is stored beside, to compare."""
-_POINTS = 10
+_POINTS = 17
 """Spectra of each parameter, of the curvature, and of each other scheme or less."""
 
 
@@ -105,7 +105,10 @@ def calibration(
 
 
 def _others(config: Config) -> dict[str, Config]:
-    """Return the instrument by every scheme that can, by the variable of its slope."""
+    """Return the instrument by every scheme that can, by the variable of its slope.
+
+    By rays it is without what these can't do, as a pupil or an offset.
+    """
     waves = {} if beyond_maxwell(config) else {"maxwell_phase_slope": waves_of(config)}
     return {
         "rays_phase_slope": by_rays(config, RAYS), "light_paths_phase_slope": paths_of(config),
@@ -121,7 +124,7 @@ def _require_budget(own: Config, diameters: Array) -> None:
     if hours > most:
         raise ConfigError(
             f"budget.cpu_hours: {most:g} given, but a calibration by scheme {scheme.name} takes "
-            f"about {hours:.2g}; raise it to confirm, or give fewer calibration.diameters"
+            f"about {hours:.2g} h; raise it to confirm, or give fewer calibration.diameters"
         )
 
 
@@ -144,7 +147,6 @@ def _variables(
 ) -> dict[str, Any]:
     """Return the variables of what is known at each diameter, with the budget of the errors."""
     column = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    status = flags(AccuracyStatus, column.pop("accuracy_status"))
     parameters = parameters_of(own)
     slope, sensitivity = column["fixed_focus_phase_slope"], column.pop("sensitivity")
     spread, shift = column.pop("spread"), column.pop("shift")
@@ -160,11 +162,15 @@ def _variables(
     else:
         known = np.full(slope.size, ModelStatus.BY_MAXWELL)
     missed = interpolation_error(diameters, slope)
-    error = np.linalg.norm([*parts, missed, column["difference_error"]], axis=0)
+    parts += [*budget_error.T, missed, column["difference_error"]]
+    late = np.isin(
+        column["accuracy_status"], (AccuracyStatus.BUDGET_SPENT, AccuracyStatus.NOT_REACHED)
+    )
+    error = np.where(late, np.nan, np.linalg.norm(parts, axis=0))
     k = config.spectrum.wavenumbers()
     return {
+        "accuracy_status": ("diameter", *flags(AccuracyStatus, column.pop("accuracy_status"))),
         **{name: ("diameter", values) for name, values in column.items()},
-        "accuracy_status": ("diameter", *status),
         "model_status": ("diameter", *flags(ModelStatus, known)),
         "fixed_focus_phase_slope_standard_error": ("diameter", error),
         "diameter_per_phase": ("diameter", 1 / slope),

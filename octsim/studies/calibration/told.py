@@ -3,9 +3,10 @@
 import numpy as np
 import xarray as xr
 
+from octsim.config.maxwell import beyond_maxwell
 from octsim.config.models import Config
 from octsim.datasets.versions import recorded_config
-from octsim.stages import spectra
+from octsim.schemes.light import AccuracyStatus
 from octsim.stages.beside_maxwell import pupil_name
 from octsim.studies.calibration.scheme import MODEL, ModelStatus, rays_because
 
@@ -14,7 +15,7 @@ def summary(table: xr.Dataset) -> str:
     """Return what a calibration found, in one line, with what its number is of."""
     config = Config.model_validate(recorded_config(table.attrs))
     slope, error = table["fixed_focus_phase_slope"], table["fixed_focus_phase_slope_standard_error"]
-    share = float((error / slope).max())
+    share = float((error / slope).max(skipna=False))
     sure = f"{share:.2%} or less" if np.isfinite(share) else "not known everywhere"
     line = f"{float(table['slope']):.3g} d {1e3 * float(table['intercept']):+.3g} nm"
     waves = f"Maxwell's equations ({pupil_name(config)} pupil)"
@@ -29,22 +30,25 @@ def summary(table: xr.Dataset) -> str:
 def _largest(table: xr.Dataset) -> str:
     """Say what the standard error is mostly of."""
     parts = {
-        str(name): float(table["budget"].sel(parameter=name).mean("diameter"))
+        str(name): float(table["budget"].sel(parameter=name).mean("diameter", skipna=False))
         for name in table["parameter"].values
     }
     parts["interpolation"] = float(table["interpolation_error"].mean())
-    largest = max(parts, key=lambda name: (parts[name] != parts[name], parts[name]))
+    unknown = [name for name, part in parts.items() if np.isnan(part)]
+    largest = unknown[0] if unknown else max(parts, key=lambda name: parts[name])
     others = {MODEL: "as far as rays are off", "interpolation": "between calibration.diameters"}
     return others.get(largest, f"from calibration.tolerances.{largest}")
 
 
 def doubts(table: xr.Dataset) -> list[str]:
     """Say, a line each, where a calibration is not what one would want."""
-    said, status = spectra.doubts(table), table["model_status"].values
+    said, status = _doubts_of_spectra(table), table["model_status"].values
     compared, unknown = (status == one for one in (ModelStatus.COMPARED, ModelStatus.NOT_COMPARED))
     if not (compared.any() or unknown.any()):
         return said
-    reason = rays_because(Config.model_validate(recorded_config(table.attrs)))
+    config = Config.model_validate(recorded_config(table.attrs))
+    reason = rays_because(config).partition("; ")[0]
+    beyond = beyond_maxwell(config).partition("; ")[0] or "their accuracy was not reached"
     if compared.any():
         off = (table["fixed_focus_phase_slope"] / table["maxwell_phase_slope"] - 1)[compared]
         said.append(
@@ -55,7 +59,19 @@ def doubts(table: xr.Dataset) -> list[str]:
     if unknown.any():
         said.append(
             f"the slope is by rays ({reason}) and is not compared with Maxwell's equations at "
-            f"{unknown.sum()} of {unknown.size} diameters, so its standard error is not known "
-            "there (NaN); where it was compared it is often 10 % off (docs/validity.md)"
+            f"{unknown.sum()} of {unknown.size} diameters ({beyond}), so its standard error is not "
+            "known there (NaN); where it was compared it is often 10 % off (docs/validity.md)"
         )
     return said
+
+
+def _doubts_of_spectra(table: xr.Dataset) -> list[str]:
+    late = table["accuracy_status"].values != AccuracyStatus.REACHED
+    if not late.any():
+        return []
+    error = float(table["intensity_error"].values[late].max())
+    return [
+        f"the accuracy of the spectra is not, or not surely, reached at {late.sum()} of {late.size} "
+        f"diameters (accuracy_status; estimated error up to {error:.2g}): give other "
+        "calibration.diameters, or another calibration.scheme"
+    ]

@@ -9,11 +9,13 @@ from numpy.polynomial.hermite_e import hermegauss
 
 from octsim.config.derive import changed
 from octsim.config.models import Config
-from octsim.phase.derivatives import Array
+from octsim.phase.derivatives import Array, stencil
 from octsim.studies.calibration.parameters import PARAMETERS, parameters_of
 
 _NODES, _WEIGHTS = (part.round(15) + 0.0 for part in hermegauss(5))
 _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
+_ROOM = 0.05
+"""Of a tolerance: less between a parameter and its limit is none."""
 _SIDES = np.array([-1.0, 1.0])
 
 
@@ -57,12 +59,19 @@ def nodes_of(config: Config, name: str) -> Nodes:
     one, tolerance = PARAMETERS[name], getattr(config.calibration.tolerances, name)
     at, (least, most) = one.believed(config), one.limits(config)
     scale = tolerance or one.step
-    reached = np.clip(scale * _NODES, min(least - at, 0.0), max(most - at, 0.0))
+    below, above = (room if room > _ROOM * scale else 0.0 for room in (at - least, most - at))
+    reached = np.clip(scale * _NODES, -below, above)
     offset, place = np.unique(reached, return_inverse=True)
     weight: Array = np.where(offset == 0, 1.0, 0.0)
     if tolerance:
         weight = np.bincount(place, _WEIGHTS).astype(np.float64)
     return Nodes(offset, weight, tolerance)
+
+
+def offsets_of(config: Config, name: str) -> Array:
+    """Return five small changes of a parameter, (5,), that leave it possible."""
+    one = PARAMETERS[name]
+    return stencil(one.believed(config), one.step, *one.limits(config))
 
 
 def changes_by(nodes: Nodes, slopes: Array) -> Changes:

@@ -23,8 +23,10 @@ def value_of(config: Config, name: str) -> float:
     if name != "fill":
         return PARAMETERS[name].believed(config)
     match config.pupil:
-        case GaussianFill(gaussian=width) | FibreMode(fibre=width):
+        case GaussianFill(gaussian=width):
             return width
+        case FibreMode(fibre=diameter):
+            return 1 / diameter  # a wider mode fills less
     raise AssertionError(config.pupil)
 
 
