@@ -202,9 +202,9 @@ would have said {thesis_example}, rays at a held focus {rays_example}.
 A slope is nothing without what it is of. This one is by Maxwell's equations (scheme `fullwave`,
 whatever the run's own), a pupil that the mode of a fibre fills (5 µm, at the magnification),
 unpolarised light, the focus held where the law puts it, and the estimator `sinusoid` with the
-frequency held. For the pupil of a lab: `tracing: {{preset: exact}}` and `objective: {{pupil: {{gaussian:
-0.5}}}}`. [design.md](design.md) says which pupil, focus and estimator know an expansion best:
-a pupil that is less filled has a slope that moves less with the diameter.
+frequency held. A lab gives its own pupil: `objective: {{pupil: {{gaussian: 0.5}}}}`, with `tracing:
+{{preset: exact}}`. [design.md](design.md) says which pupil, focus and estimator know an expansion
+best: a pupil that is less filled has a slope that moves less with the diameter.
 
 ```sh
 .venv/bin/snakemake calibration --cores 2        # calibration.nc and its figure
@@ -262,7 +262,8 @@ is differentiated by each, and is found with each off at the five nodes of Gauss
 for its normal deviates, within ±2.9 tolerances (what is beyond a limit is put at it). That says how
 far it scatters and by how much it is shifted as a mean; the last column is how far a rule of three
 is from that of five. Scatters are added in quadrature, with these differences, the errors of the
-interpolation and of the finite differences; shifts are added as they are (`slope_shift`, {shift} of the slope) and then in quadrature.
+interpolation and of the finite differences; shifts are added as they are
+(`slope_shift`, {shift} of the slope) and then in quadrature.
 
 {budget}
 On average most is by {most_shares}.

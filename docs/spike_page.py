@@ -288,7 +288,8 @@ The beat's own slope, differentiated at a point (Richardson's extrapolation of �
 estimated error up to {beat_error}), is {beat}, from {beat_first} at the first diameter to
 {beat_last} at the last; n (k_min + k_max) is {predicted}. That is with a focus that follows the
 diameter by the law. With the focus held, as it is while a neuron is active, it is by rays {held}
-(Maxwell's is in [calibration.md](calibration.md); estimated error up to {held_error}), from {held_first} to {held_last}: the two differ by the law's
+(Maxwell's is in [calibration.md](calibration.md); estimated error up to {held_error}), from
+{held_first} to {held_last}: the two differ by the law's
 slope times ∂φ/∂z. Mean slopes of the sides' own phases, at the middle of the band, as what they are
 along the axis plus what light off the axis adds:
 

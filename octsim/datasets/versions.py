@@ -29,8 +29,11 @@ _RENAMED: Mapping[str, Mapping[str, str]] = {
 }
 
 
-_THEN = {"calibration": {"scheme": "paths"}}
-"""What was done before there was a key for it, where that is not the default."""
+_CALIBRATED = {"calibration": {"scheme": "paths"}}
+_THEN: Mapping[str, Mapping[str, Any]] = dict.fromkeys(
+    ("calibration", "expansion", "action_potential"), _CALIBRATED
+)
+"""What was done for a dataset before there was a key for it, where that is not the default."""
 
 
 def recorded_config(attributes: Mapping[str, Any]) -> dict[str, Any]:
@@ -44,8 +47,11 @@ def recorded_config(attributes: Mapping[str, Any]) -> dict[str, Any]:
         If there is none, or one that this octsim has no meaning for.
     """
     try:
-        recorded = json.loads(attributes["config"])
-        return Config.model_validate(merge(merge(Config().to_dict(), _THEN), recorded)).to_dict()
+        recorded, then = (
+            json.loads(attributes["config"]),
+            _THEN.get(str(attributes.get("stage")), {}),
+        )
+        return Config.model_validate(merge(merge(Config().to_dict(), then), recorded)).to_dict()
     except ValidationError as error:
         raise ValueError(f"its config: {explain(error.errors()[0])}") from None
     except (KeyError, TypeError, AttributeError, ValueError, RecursionError):

@@ -9,7 +9,7 @@ import xarray as xr
 import octsim
 from octsim.base.provenance import environment
 from octsim.datasets.files import write
-from octsim.datasets.versions import SCHEMA
+from octsim.datasets.versions import SCHEMA, recorded_config
 from octsim.phase.fringe_status import FringeStatus
 
 OLD = Path(__file__).parents[1] / "old"
@@ -114,3 +114,11 @@ def test_a_file_of_something_else_is_refused(tmp_path: Path) -> None:
     write(xr.Dataset({"a": 1.0}), tmp_path / "notes.nc")
     with pytest.raises(octsim.DatasetError, match="not a dataset of octsim"):
         octsim.read(tmp_path / "notes.nc")
+
+
+def test_a_calibration_from_before_there_was_its_scheme_was_by_light_paths() -> None:
+    config = octsim.Config().to_dict()
+    del config["calibration"]["scheme"]
+    for stage, scheme in (("calibration", "paths"), ("spectra", None)):
+        attributes = {"stage": stage, "config": json.dumps(config)}
+        assert recorded_config(attributes)["calibration"]["scheme"] == scheme

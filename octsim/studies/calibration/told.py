@@ -71,7 +71,7 @@ def _doubts_of_spectra(table: xr.Dataset) -> list[str]:
         return []
     error = float(table["intensity_error"].values[late].max())
     return [
-        f"the accuracy of the spectra is not, or not surely, reached at {late.sum()} of {late.size} "
-        f"diameters (accuracy_status; estimated error up to {error:.2g}): give other "
+        f"the accuracy of the spectra is not, or not surely, reached at {late.sum()} of "
+        f"{late.size} diameters (accuracy_status; estimated error up to {error:.2g}): give other "
         "calibration.diameters, or another calibration.scheme"
     ]
