@@ -66,9 +66,9 @@ def _draw_slopes(axes: Axes, table: xr.Dataset) -> None:
 def _draw_budget(axes: Axes, table: xr.Dataset) -> None:
     """Draw what each tolerance makes of the slope's error, relative to the slope."""
     diameter, slope = table["diameter"], table["fixed_focus_phase_slope"]
-    total = table["fixed_focus_phase_slope_standard_error"] / slope
+    total = table["fixed_focus_phase_slope_standard_error"] / np.abs(slope)
     axes.plot(diameter, 100 * total, color=BLACK, linewidth=2, label="all together")
-    shares = 100 * table["budget"] / slope
+    shares = 100 * table["budget"] / np.abs(slope)
     most = shares.mean("diameter").values.argsort()[::-1][:_SHOWN]
     colours = (BLUE, ORANGE, GREEN, PURPLE, VERMILION)
     for place, colour, marker in zip(most, colours, _MARKERS, strict=True):

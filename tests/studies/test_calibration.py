@@ -305,8 +305,9 @@ def test_what_can_not_be_calibrated_so_is_refused_in_a_line(
     assert "\n" not in str(refused.value)
 
 
-def test_an_interpolation_is_better_than_its_error_says() -> None:
-    diameter = np.linspace(1, 2, 21)
+@pytest.mark.parametrize("number", [21, 22])
+def test_an_interpolation_is_better_than_its_error_says(number: int) -> None:
+    diameter = np.linspace(1, 2, number)
 
     def slope(at: Array) -> Array:
         curve: Array = 24 - at + 0.05 * np.sin(15 * at)
@@ -317,6 +318,7 @@ def test_an_interpolation_is_better_than_its_error_says() -> None:
     off = np.abs(CubicSpline(diameter, slope(diameter))(between) - slope(between))
     assert (off <= np.maximum(stated[1:], stated[:-1])).all()
     assert stated.max() < 0.01
+    assert stated.min() > 0
 
 
 def test_the_table_explains_itself_is_read_back_and_drawn(
@@ -358,3 +360,11 @@ def test_a_diameter_without_a_fringe_is_refused() -> None:
         OctsimError, match=r"calibration: no phase .* 1\.33 um \(no_fringe\), and at 0"
     ):
         calibration(config)
+
+
+def test_a_slope_that_changes_its_sign_is_doubted(calibrated: xr.Dataset) -> None:
+    turned = calibrated.copy(deep=True)
+    turned["fixed_focus_phase_slope"][2] *= -1
+    (doubt,) = doubts(turned)
+    assert "the slope changes its sign" in doubt
+    assert float(summary(turned).partition("standard error ")[2].partition("%")[0]) > 0

@@ -138,6 +138,8 @@ def interpolation_error(diameter: Array, slope: Array) -> Array:
     half = CubicSpline(diameter[::2], slope[::2])
     inner = diameter[1::2] <= diameter[::2][-1]
     missed[1::2] = np.where(inner, np.abs(half(diameter[1::2]) - slope[1::2]), 0.0)
+    if diameter.size % 2 == 0:  # the last one is beyond that half
+        missed[-1] = missed[-3]
     around = np.pad(missed, 1)
     return np.maximum(missed, np.maximum(around[:-2], around[2:]))
 

@@ -15,7 +15,7 @@ def summary(table: xr.Dataset) -> str:
     """Return what a calibration found, in one line, with what its number is of."""
     config = Config.model_validate(recorded_config(table.attrs))
     slope, error = table["fixed_focus_phase_slope"], table["fixed_focus_phase_slope_standard_error"]
-    share = float((error / slope).max(skipna=False))
+    share = float((error / np.abs(slope)).max(skipna=False))
     sure = f"{share:.2%} or less" if np.isfinite(share) else "not known everywhere"
     line = f"{float(table['slope']):.3g} d {1e3 * float(table['intercept']):+.3g} nm"
     waves = f"Maxwell's equations ({pupil_name(config)} pupil)"
@@ -36,7 +36,10 @@ def _largest(table: xr.Dataset) -> str:
     parts["interpolation"] = float(table["interpolation_error"].mean())
     unknown = [name for name, part in parts.items() if np.isnan(part)]
     largest = unknown[0] if unknown else max(parts, key=lambda name: parts[name])
-    others = {MODEL: "as far as rays are off", "interpolation": "between calibration.diameters"}
+    others = {
+        MODEL: "as far as rays are off",
+        "interpolation": "by interpolation (raise calibration.diameters.num)",
+    }
     return others.get(largest, f"from calibration.tolerances.{largest}")
 
 
@@ -44,6 +47,14 @@ def doubts(table: xr.Dataset) -> list[str]:
     """Say, a line each, where a calibration is not what one would want."""
     said, status = _doubts_of_spectra(table), table["model_status"].values
     compared, unknown = (status == one for one in (ModelStatus.COMPARED, ModelStatus.NOT_COMPARED))
+    slope = table["fixed_focus_phase_slope"].values
+    lost = np.abs(slope) < table["fixed_focus_phase_slope_standard_error"].values
+    if lost.any() or (np.sign(slope) != np.sign(slope[0])).any():
+        said.append(
+            f"the slope changes its sign, or its standard error is larger than it, at "
+            f"{max(lost.sum(), 1)} of {slope.size} diameters: there the calibration means nothing; "
+            "give another pupil, focus or calibration.estimator (docs/design.md)"
+        )
     if not (compared.any() or unknown.any()):
         return said
     config = Config.model_validate(recorded_config(table.attrs))
