@@ -11,6 +11,7 @@ from octsim.config.fields import (
     Section,
     TableRange,
     Tolerance,
+    absent,
     as_tuple,
     key,
 )
@@ -57,9 +58,7 @@ class Calibration(Section):
     estimator: PhaseEstimator = key(
         "sinusoid", "of the phase, one of processing.estimator, with the options of processing"
     )
-    scheme: Annotated[
-        Literal["fullwave", "paths"] | None, BeforeValidator(lambda v: None if v == "none" else v)
-    ] = key(
+    scheme: Annotated[Literal["fullwave", "paths"] | None, BeforeValidator(absent)] = key(
         None,
         f"how spectra are found, whatever the run's scheme: {FULL_WAVE.name}, Maxwell's equations, "
         f"or {LIGHT_PATHS.name}, rays; null is {FULL_WAVE.name} where it can",

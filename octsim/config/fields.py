@@ -28,6 +28,11 @@ def as_tuple(value: object) -> object:
     return tuple(value) if isinstance(value, list) else value
 
 
+def absent(value: object) -> object:
+    """Return None for ``none``, which is what stands for it in text."""
+    return None if value == "none" else value
+
+
 def as_text(value: Any) -> str:
     """Write a value of the config as a user would."""
     if isinstance(value, Mapping | list | tuple | bool) or value is None:

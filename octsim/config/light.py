@@ -6,13 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Discriminator, PlainSerializer, Tag, WithJsonSchema
 
-from octsim.config.fields import PositiveLength, PositiveNumber, Section
+from octsim.config.fields import PositiveLength, PositiveNumber, Section, absent
 from octsim.config.fields import key as _key
 from octsim.config.units import ANGLE, format_angle, parse_angle, schema_of
-
-
-def _absent(value: object) -> object:
-    return None if value == "none" else value
 
 
 class GaussianFill(Section):
@@ -32,7 +28,7 @@ class FibreMode(Section):
 def _pupil(value: object) -> object:
     if isinstance(value, Mapping) and {"gaussian", "fibre"} <= value.keys():
         raise ValueError("it should be one of the two")
-    return _absent(value)
+    return absent(value)
 
 
 def _pupil_kind(value: object) -> str:
@@ -63,7 +59,7 @@ class Objective(Section):
         "how light fills it: uniform, {gaussian: 1.0} (1/e² radius of intensity over the pupil's) "
         "or {fibre: 5 um} (mode-field diameter); null is the scheme's own",
     )
-    apodisation: Annotated[Literal["aplanatic"] | None, BeforeValidator(_absent)] = _key(
+    apodisation: Annotated[Literal["aplanatic"] | None, BeforeValidator(absent)] = _key(
         None, "aplanatic: √cos θ in, 1/√cos θ out; null or none is the scheme's own"
     )
 
@@ -82,7 +78,7 @@ def _state(value: object) -> object:
 
 
 def _direction(value: object) -> float | None:
-    if _absent(value) is None:
+    if absent(value) is None:
         return None
     angle = parse_angle(value)
     if abs(angle) > _TURN:

@@ -8,11 +8,14 @@ from octsim.config.abilities import asked_of_scheme
 from octsim.config.derive import by_accuracy
 from octsim.config.maxwell import beyond_maxwell, by_maxwell
 from octsim.config.models import Config
+from octsim.schemes.light import AccuracyStatus
 from octsim.schemes.table import FULL_WAVE, LIGHT_PATHS
 
 ACCURACY: Mapping[str, float] = {FULL_WAVE.name: 1e-6, LIGHT_PATHS.name: 1e-8}
 """Of the spectra, by scheme, so that slopes over 0.1 nm are sure to 1e-5 mrad/nm: the error of
 waves is the same on both sides of so small a step, that of light paths is not."""
+MISSED = (AccuracyStatus.BUDGET_SPENT, AccuracyStatus.NOT_REACHED)
+"""Of spectra whose slopes' errors are not known."""
 MODEL = "model"
 """Line of the budget: how far rays are from Maxwell's equations."""
 

@@ -15,6 +15,7 @@ from octsim.phase.estimators.series import series_phases
 from octsim.phase.estimators.visible import require_fringe
 from octsim.schemes.light import AccuracyStatus
 from octsim.studies.calibration.parameters import parameters_of
+from octsim.studies.calibration.scheme import MISSED
 from octsim.studies.calibration.tolerances import Nodes, changes_by, moved, nodes_of, offsets_of
 from octsim.studies.sides import side_slopes
 
@@ -156,10 +157,10 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
     require_fringe("calibration", middle, k, np.array([depth]), fixed.error)
     following = observed(own, diameter + offsets, focus + bench.law_slope * offsets)
     focused = observed(own, at_rest, focus + offsets)
+    # nothing is off in the middle of each of the following: that pair is there already
+    here = fixed._replace(intensity=fixed.intensity[[0, -1]])
     bends = stencil(0.0, _CURVATURE_STEP)
-    bent = [pair(Placed(own, by)) for by in bends.tolist()]
-    # nothing is off in the middle of each
-    here = pair(Placed(own))
+    bent = [pair(Placed(own, by)) if by else here for by in bends.tolist()]
     varied = [
         [here if placed == Placed(own) else pair(placed) for placed in (*one.placed, *one.beside)]
         for one in bench.varied.values()
@@ -176,8 +177,7 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
 
     def slope_of(placed: Placed) -> float:
         seen = pair(placed)
-        missed = seen.status in (AccuracyStatus.BUDGET_SPENT, AccuracyStatus.NOT_REACHED)
-        return np.nan if missed else pair_slope(seen)
+        return np.nan if seen.status in MISSED else pair_slope(seen)
 
     def pair_slopes(pairs: list[Spectra]) -> Array:
         return np.array([pair_slope(pair) for pair in pairs])

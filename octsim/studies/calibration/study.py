@@ -22,6 +22,7 @@ from octsim.schemes.light import AccuracyStatus
 from octsim.stages.focus_law import focus_line
 from octsim.studies.calibration.parameters import parameters_of
 from octsim.studies.calibration.scheme import (
+    MISSED,
     MODEL,
     ModelStatus,
     converged,
@@ -136,8 +137,7 @@ def interpolation_error(diameter: Array, slope: Array) -> Array:
     """
     missed = np.zeros_like(slope)
     half = CubicSpline(diameter[::2], slope[::2])
-    inner = diameter[1::2] <= diameter[::2][-1]
-    missed[1::2] = np.where(inner, np.abs(half(diameter[1::2]) - slope[1::2]), 0.0)
+    missed[1::2] = np.abs(half(diameter[1::2]) - slope[1::2])
     if diameter.size % 2 == 0:  # the last one is beyond that half
         missed[-1] = missed[-3]
     around = np.pad(missed, 1)
@@ -165,9 +165,7 @@ def _variables(
         known = np.full(slope.size, ModelStatus.BY_MAXWELL)
     missed = interpolation_error(diameters, slope)
     parts += [*budget_error.T, missed, column["difference_error"]]
-    late = np.isin(
-        column["accuracy_status"], (AccuracyStatus.BUDGET_SPENT, AccuracyStatus.NOT_REACHED)
-    )
+    late = np.isin(column["accuracy_status"], MISSED)
     error = np.where(late, np.nan, np.linalg.norm(parts, axis=0))
     k = config.spectrum.wavenumbers()
     return {

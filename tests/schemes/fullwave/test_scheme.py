@@ -122,7 +122,10 @@ def test_threads_make_their_operators_at_the_same_time(monkeypatch: pytest.Monke
     shared, orders = operators.Operators(), Orders(8, 8, 20, 6)
     k = np.array([8.0])
     scenes = [CylinderOnPlane(1.52, 1.33, 1.39, 0.005, d) for d in (0.5, 0.6)]
-    list(each(lambda one: shared.of(one, 1.0, k, orders), scenes, 2))
+    made = list(each(lambda one: shared.of(one, 1.0, k, orders), scenes, 2))
+    assert made[0] is not made[1]
+    kept = [shared.of(one, 1.0, k, orders) for one in scenes]
+    assert all(one is other for one, other in zip(kept, made, strict=True))
 
 
 def test_an_operator_that_failed_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
