@@ -28,6 +28,13 @@ def as_tuple(value: object) -> object:
     return tuple(value) if isinstance(value, list) else value
 
 
+def listed(value: object) -> object:
+    """Return a list as a tuple; of anything else say that it is none."""
+    if not isinstance(value, list | tuple):
+        raise ValueError("it should be a list")  # noqa: TRY004
+    return tuple(value)
+
+
 def absent(value: object) -> object:
     """Return None for ``none``, which is what stands for it in text."""
     return None if value == "none" else value

@@ -5,9 +5,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, PlainSerializer
 
-from octsim.config.fields import Index, Position, PositiveLength, Section
+from octsim.config.dispersion import MediumIndex, material_of
+from octsim.config.fields import Position, PositiveLength, Section, listed
 from octsim.config.fields import key as _key
 from octsim.config.units import Angle, Attenuation, Length, format_length, parse_length
+from octsim.optics.materials import Material
 
 _NAME = r"^[A-Za-z][A-Za-z0-9_-]*$"
 Medium = Annotated[str, Field(pattern=_NAME, max_length=100)]
@@ -16,30 +18,24 @@ Gap = Annotated[Length, Field(ge=0, le=1e6)]
 SWEPT = "swept"
 
 
-def _plain_index(value: object) -> object:
-    if isinstance(value, Mapping):
-        kinds = ", ".join(map(str, value))
-        raise ValueError(f"a dispersion ({kinds}) comes with a later version; give a number")  # noqa: TRY004
-    return value
-
-
-_FreeIndex = Annotated[Index, BeforeValidator(_plain_index)]
-
-
 class RefractiveIndex(Section):
     """Refractive indices of the media, by their names; other names are free, and must be used."""
 
     model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[Medium, _FreeIndex]
+    __pydantic_extra__: dict[Medium, MediumIndex]
 
-    glass: _FreeIndex = _key(1.52, "slide and immersion oil")
-    water: _FreeIndex = _key(1.33, "around the neuron")
-    neuron: _FreeIndex = _key(1.39, "the cylinder")
+    glass: MediumIndex = _key(1.52, "slide and immersion oil")
+    water: MediumIndex = _key(1.33, "around the neuron")
+    neuron: MediumIndex = _key(
+        1.39,
+        "the cylinder; each is a number, {cauchy: [A, B, C]}, {sellmeier: {B: [...], C: [...]}}, "
+        "{table: file.csv}, or the name of a material that octsim has",
+    )
 
     @property
-    def of(self) -> Mapping[str, float]:
-        """Index of each medium by its name."""
-        return dict(self)
+    def of(self) -> Mapping[str, Material]:
+        """Material of each medium by its name."""
+        return {name: material_of(index) for name, index in self}
 
 
 class AttenuationConfig(Section):
@@ -96,13 +92,6 @@ class Shell(Section):
     thickness: PositiveLength
 
 
-def _listed(value: object) -> object:
-    # YAML and JSON know lists; a tuple can't be changed
-    if not isinstance(value, list | tuple):
-        raise ValueError("it should be a list")  # noqa: TRY004
-    return tuple(value)
-
-
 def _layered(value: tuple[Layer, ...]) -> tuple[Layer, ...]:
     if len(value) < 2:
         raise ValueError("it should name two or more, from below")
@@ -122,7 +111,7 @@ class CylinderConfig(Section):
     gap: Gap | None = _key(None, "below it, to its layer's lower plane; null is scene.gap")
     azimuth: Turn = _key("0 deg", "angle from the y axis to its axis, positive from +y to −x")
     elevation: Tilt = _key("0 deg", "angle of its axis above the horizontal")
-    shells: Annotated[tuple[Shell, ...], BeforeValidator(_listed)] = _key(
+    shells: Annotated[tuple[Shell, ...], BeforeValidator(listed)] = _key(
         (), "{medium, thickness} each, outside in"
     )
 
@@ -144,13 +133,13 @@ class SceneConfig(Section):
             ],
             ...,
         ],
-        BeforeValidator(_listed),
+        BeforeValidator(listed),
         AfterValidator(_layered),
     ] = _key(
         ["glass", "water"],
         "from below, the first ends at z = 0; one between two others as {medium, thickness}",
     )
-    cylinders: Annotated[tuple[CylinderConfig, ...], BeforeValidator(_listed)] = _key(
+    cylinders: Annotated[tuple[CylinderConfig, ...], BeforeValidator(listed)] = _key(
         [{"medium": "neuron"}],
         "{medium, diameter, x, gap, azimuth, elevation, shells} each, all but the first optional",
     )
@@ -226,22 +215,22 @@ class SceneConfig(Section):
 
     @property
     def swept_medium(self) -> str:
-        """Medium of what is swept: the n_neuron of the formulas is its index."""
+        """Medium of what is swept: the n_neuron of the formulas is its index, or group index."""
         section, place = self.swept[0].rsplit(".", 1)
         parts = self.cylinders if section == "scene.cylinders" else self.layers
         return parts[int(place)].medium
 
     @property
-    def objective_index(self) -> float:
-        """Refractive index around the objective."""
+    def objective_material(self) -> Material:
+        """What is around the objective."""
         return self.refractive_index.of[self.objective_medium]
 
     @property
-    def host_index(self) -> float:
-        """Refractive index around the cylinders."""
+    def host_material(self) -> Material:
+        """What is around the cylinders."""
         return self.refractive_index.of[self.host_medium]
 
     @property
-    def swept_index(self) -> float:
-        """Refractive index of what is swept."""
+    def swept_material(self) -> Material:
+        """What is swept is of this."""
         return self.refractive_index.of[self.swept_medium]

@@ -64,6 +64,7 @@ _PLAIN = (
     ("ratio", ("%", "percent"), "0.01"),
 )
 _INVERSE = re.compile(r"(?:1|rad)\s*/\s*(\S+)|(\S+?)\s*(?:\^|\*\*)?\s*-1")
+_PER = re.compile(r"([^\W\d_]+)\s*/\s*([^\W\d_]+?)((?:(?:\^|\*\*)?2|²)?)")
 _NUMBER_PATTERN = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _NUMBER = re.compile(rf"\s*{_NUMBER_PATTERN}\s*")
 _QUANTITY = re.compile(rf"\s*({_NUMBER_PATTERN})\s*([^\W\d_]\S*|[°%]|\s1?/\S+)\s*")
@@ -71,7 +72,7 @@ _QUANTITY = re.compile(rf"\s*({_NUMBER_PATTERN})\s*([^\W\d_]\S*|[°%]|\s1?/\S+)\
 
 @cache
 def known_units() -> Mapping[str, Unit]:
-    """Return every unit by each way to write it, but for inverse lengths."""
+    """Return every unit by each way to write it, but for quotients of lengths."""
     units = {}
     for dimension, symbol, names, size in _PREFIXED:
         for prefix, (shorts, power) in {"": (("",), 0), **PREFIXES}.items():
@@ -84,12 +85,26 @@ def known_units() -> Mapping[str, Unit]:
 
 
 def find_unit(name: str) -> Unit | None:
-    """Return the unit of a name, such as ``um``, ``micrometers`` or ``1/um``; None if not known."""
+    """Return the unit of a name, as ``um``, ``micrometers``, ``1/um``, ``nm/um`` or ``um/um^2``.
+
+    It is None if it is not known.
+    """
     unit = known_units().get(name)
     inverse = None if unit else known_units().get(inverted(name) or "")
     if inverse and inverse.dimension == "length":
         return Unit("inverse length", 1 / inverse.size)
-    return unit
+    return unit or _quotient(name)
+
+
+def _quotient(name: str) -> Unit | None:
+    """Return the unit that is a length over a length, or over the square of one; None of others."""
+    match = _PER.fullmatch(name)
+    over, under = (known_units().get(match[place]) if match else None for place in (1, 2))
+    if not (match and over and under) or {over.dimension, under.dimension} != {"length"}:
+        return None
+    if match[3]:
+        return Unit("inverse length", over.size / under.size**2)
+    return Unit("ratio", over.size / under.size)
 
 
 def inverted(name: str) -> str | None:
@@ -122,6 +137,13 @@ ANGLE = Quantity("angle", "an angle", "rad", ("30 deg", "0.5 rad"), "A-Za-z°")
 ATTENUATION = Quantity(
     "inverse length", "an attenuation", "1/um", ("100 /cm", "10 /mm"), "A-Za-z\u00b5\u03bc1/^ -"
 )
+RATIO = Quantity(
+    "ratio", "a length per length", "um/um", ("0.4 um/um", "400 nm/um"), "A-Za-z\u00b5\u03bc/%"
+)
+PER_LENGTH = Quantity(
+    "inverse length", "a length per length squared", "1/um", ("0.2 um/um^2", "0.2 /um"),
+    "A-Za-z\u00b5\u03bc12/^\u00b2 -",
+)  # fmt: skip
 
 
 def parse(quantity: Quantity, text: object) -> float:
@@ -241,3 +263,19 @@ Attenuation = Annotated[
     WithJsonSchema(schema_of(ATTENUATION)),
 ]
 """An attenuation in 1/µm, given as text with its unit."""
+
+Ratio = Annotated[
+    float,
+    BeforeValidator(partial(parse, RATIO)),
+    PlainSerializer("{!r} um/um".format, return_type=str),
+    WithJsonSchema(schema_of(RATIO)),
+]
+"""A length per length, given as text with its unit."""
+
+PerLength = Annotated[
+    float,
+    BeforeValidator(partial(parse, PER_LENGTH)),
+    PlainSerializer("{!r} 1/um".format, return_type=str),
+    WithJsonSchema(schema_of(PER_LENGTH)),
+]
+"""A length per length squared in 1/µm, given as text with its unit."""

@@ -1,6 +1,8 @@
-"""The scene: regions, the surfaces between them, and the neuron over its glass slide."""
+"""The scene: regions, the surfaces between them, the neuron over its glass slide, and plates."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple
 
 from octsim.optics.materials import Material
@@ -21,6 +23,17 @@ class Region:
 
     name: str
     material: Material
+    attenuation: float = 0.0
+    """Of intensity, base e, by absorption and scattering besides the material's κ, 1/µm."""
+
+    @property
+    def attenuates(self) -> bool:
+        """Whether it takes light away."""
+        return self.attenuation > 0 or self.material.absorbs
+
+    def attenuation_at(self, wavenumber: float) -> float:
+        """Return the attenuation of intensity at a wavenumber (1/µm), 1/µm: with 2 k κ."""
+        return self.attenuation + 2 * wavenumber * self.material.index(wavenumber).imag
 
 
 @dataclass(frozen=True)
@@ -107,6 +120,12 @@ class Scene:
         return tuple(dict.fromkeys((self.objective, *sides)))
 
     @property
+    def attenuates(self) -> bool:
+        """Whether any region takes light away."""
+        sides = (region for surface in self.surfaces for region in surface.sides)
+        return self.objective.attenuates or any(region.attenuates for region in sides)
+
+    @property
     def surface_names(self) -> tuple[str, ...]:
         """The surfaces' short names, in their order."""
         return tuple(surface.name for surface in self.surfaces)
@@ -132,6 +151,7 @@ def neuron_on_glass(
     diameter: float,
     x: float = 0.0,
     azimuth: float = 0.0,
+    attenuation: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> Scene:
     """Return a neuron in water, a gap above the glass–water plane z = 0.
 
@@ -145,8 +165,12 @@ def neuron_on_glass(
         Where its axis meets the plane y = 0, µm.
     azimuth : float
         Angle from the y axis to its axis, rad.
+    attenuation : tuple of float
+        Of glass, water and neuron, 1/µm.
     """
-    slide, bath, axon = Region("glass", glass), Region("water", water), Region("neuron", neuron)
+    slide, bath, axon = map(
+        Region, ("glass", "water", "neuron"), (glass, water, neuron), attenuation
+    )
     plane, cylinder = NEURON_ON_GLASS
     radius = diameter / 2
     return Scene(
@@ -156,3 +180,23 @@ def neuron_on_glass(
             Cylinder(cylinder, x, gap + radius, radius, inside=axon, outside=bath, azimuth=azimuth),
         ),
     )
+
+
+def plates(regions: Sequence[Region], heights: Sequence[float]) -> Scene:
+    """Return horizontal planes, one above the other.
+
+    Parameters
+    ----------
+    regions : sequence of Region
+        From below, each another one; the lowest is the objective's.
+    heights : sequence of float
+        Of the planes between them, increasing, µm.
+    """
+    between = zip(_names_of_planes(len(heights)), heights, pairwise(regions), strict=True)
+    return Scene(regions[0], tuple(Plane(name, height, *sides) for name, height, sides in between))
+
+
+def _names_of_planes(number: int) -> list[str]:
+    # without R and T, which say what light does there, and C, the cylinder's
+    letters = "PQSUVWXYZ"
+    return [*letters, *(f"P{n}" for n in range(len(letters) + 1, number + 1))][:number]

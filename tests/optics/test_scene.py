@@ -1,5 +1,7 @@
 """Regions, what they are made of, and the symmetry of a scene."""
 
+from typing import ClassVar
+
 import pytest
 
 from octsim.optics.materials import Constant
@@ -34,8 +36,14 @@ def test_a_scene_is_as_symmetric_as_all_of_its_surfaces() -> None:
 
 def test_materials_are_taken_at_the_wavenumber() -> None:
     class Dispersive:
+        dispersive: ClassVar[bool] = True
+        absorbs: ClassVar[bool] = True
+
         def index(self, wavenumber: float) -> complex:
             return 1.3 + 0.01 * wavenumber + 1e-4j
+
+        def slope(self, wavenumber: float) -> float:  # noqa: ARG002
+            return 0.01
 
     scene = neuron_on_glass(GLASS.material, WATER.material, Dispersive(), 0.005, 1.4)
     for k in (7.0, 9.0):
