@@ -4,7 +4,6 @@ Rays are followed without it, to where they would leave the focal plane. It *acc
 two radii, and *weighs* what they carry by that place.
 """
 
-import math
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -156,15 +155,18 @@ def weight(
 
 
 @register_jitable(forceinline=True)
-def lens_correction(squared_radius: float, magnification: float, focal_length: float) -> float:
+def lens_correction(
+    squared_radius: Coordinate, magnification: float, focal_length: float
+) -> Coordinate:
     r"""Return the optical path from the focal point to the fibre, beyond that on the axis, in µm.
 
     .. math:: M (\sqrt{f^2 + \rho^2} - f) = M \rho^2 / (\sqrt{f^2 + \rho^2} + f)
 
     (thesis §4.4), in the form that does not cancel.
     """
-    reach = math.sqrt(focal_length * focal_length + squared_radius) + focal_length
-    return magnification * squared_radius / reach
+    reach = np.sqrt(focal_length * focal_length + squared_radius) + focal_length
+    correction: Coordinate = magnification * squared_radius / reach
+    return correction
 
 
 @register_jitable(forceinline=True)
