@@ -23,8 +23,13 @@ def _sources(function: Callable[..., Any]) -> tuple[str | Path, ...]:
     """Return the module of a function, and the files of the functions that it is closed over."""
     file = Path(function.__code__.co_filename)
     own = function.__module__ if PACKAGE in file.parents else file
-    held = (part for part in _held(function) if isinstance(part, FunctionType))
-    return own, *(Path(part.__code__.co_filename) for part in held)
+    return own, *(Path(part.__code__.co_filename) for part in _held_functions(function))
+
+
+def _held_functions(function: Callable[..., Any]) -> list[FunctionType]:
+    """Return the functions that a function is closed over, and those that they are."""
+    own = [part for part in _held(function) if isinstance(part, FunctionType)]
+    return own + [part for one in own for part in _held_functions(one)]
 
 
 def _held(function: Callable[..., Any]) -> list[object]:
@@ -37,7 +42,7 @@ def _named(held: object) -> str:
     if isinstance(held, tuple):
         return f"({', '.join(map(_named, held))})"
     if isinstance(held, FunctionType):
-        return f"{held.__module__}.{held.__qualname__}"
+        return f"{held.__module__}.{held.__qualname__}({', '.join(map(_named, _held(held)))})"
     return repr(held) if isinstance(held, bool | int | float | str) else ""
 
 

@@ -57,12 +57,47 @@ def jones_rows(polarisation: Polarisation, azimuth: float) -> NDArray[np.complex
         factors of the fields across and along.
     """
     inputs = _inputs(polarisation, azimuth)
+    if polarisation.input is None and polarisation.analyser is None:
+        return inputs  # of the four parts two are zero, and the other two alone have the mean
+    return (_detected(polarisation, azimuth)[:, np.newaxis] * inputs).reshape(-1, 2)
+
+
+def detected_fields(
+    polarisation: Polarisation, jones: NDArray[np.complex128]
+) -> NDArray[np.complex128]:
+    r"""Return what rays that any scene returns have in the detected intensity.
+
+    With the Jones matrices J of the rays, the input's vectors e and the analyser's a (without one,
+    both x and y)
+
+    .. math:: I = \frac{1}{C} \sum_c \Big| \sum_d E_{cd} \Big|^2, \quad
+              E_{cd} = a_c \cdot J_d e_c
+
+    Parameters
+    ----------
+    polarisation : Polarisation
+        Of the light that goes in, and of what is detected.
+    jones : ndarray, shape (D, 2, 2)
+        Detected x and y of light that went in along x and along y.
+
+    Returns
+    -------
+    ndarray
+        E, (C, D): a row for each part that adds to the intensity and not to the field.
+    """
+    inputs, detected = _inputs(polarisation, 0.0), _detected(polarisation, 0.0)
+    fields: NDArray[np.complex128] = np.einsum("ao,doi,ei->aed", detected, jones, inputs)
+    return fields.reshape(len(detected) * len(inputs), -1)
+
+
+def _detected(polarisation: Polarisation, azimuth: float) -> NDArray[np.complex128]:
+    """Return the factors of the detected fields across and along, a row for each part.
+
+    Without an analyser both detected polarisations count: twice as many parts, of twice the mean.
+    """
     if polarisation.analyser is None:
-        if polarisation.input is None:
-            return inputs
-        # both detected polarisations count: twice as many parts, of twice the mean
-        return np.diag(inputs[0] * sqrt(2))
-    return inputs * _in_frame(linear(polarisation.analyser), azimuth).conj()
+        return np.eye(2, dtype=np.complex128) * sqrt(2)
+    return _in_frame(linear(polarisation.analyser), azimuth).conj()[np.newaxis]
 
 
 def _inputs(polarisation: Polarisation, azimuth: float) -> NDArray[np.complex128]:

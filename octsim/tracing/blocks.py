@@ -11,7 +11,7 @@ import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from octsim.optics.beam import Beam
+from octsim.optics.beam import crossing
 from octsim.optics.interface import Vector, cos_transmitted_squared, reflect, refract, unit
 from octsim.optics.intersection import (
     cross_cylinder,
@@ -20,6 +20,7 @@ from octsim.optics.intersection import (
     meet_plane,
     plane_normal,
 )
+from octsim.optics.turned_rays import AnyBeam
 from octsim.tracing.faces import Faces, Kind, is_flat
 from octsim.tracing.lanes import (
     CARRIED,
@@ -112,15 +113,16 @@ def choose(face: NDArray[np.int64], f: int, n: int, chosen: NDArray[np.uint32]) 
 
 @register_jitable(forceinline=True)
 def launch(
-    beam: Beam, first: int, n: int, focus: float, block: Block,
+    beam: AnyBeam, first: int, n: int, focus: float, block: Block,
     launch_carried: Callable[[Block, int], None],
 ) -> None:  # fmt: skip
-    """Fill n lanes with rays of a beam from the first given on, referred to the focus."""
+    """Fill n lanes with rays of a beam from the first given on, referred to the focal plane."""
     for i in range(n):
-        block[X + i], block[Y + i], block[Z + i] = 0.0, 0.0, focus
+        x, y, path = crossing(beam, first + i)
+        block[X + i], block[Y + i], block[Z + i] = x, y, focus
         block[VX + i], block[VY + i] = beam.vx[first + i], beam.vy[first + i]
         block[VZ + i] = beam.vz[first + i]
-        block[PATH + i], block[RAY + i] = 0.0, first + i
+        block[PATH + i], block[RAY + i] = path, first + i
         launch_carried(block, i)
 
 

@@ -5,6 +5,7 @@ one light path after the other, depth first.
 """
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -119,6 +120,7 @@ def _arrive(
     return arrived, count
 
 
+@cache
 def make_tree(carry: Carry) -> Callable[..., tuple[Any, ...]]:
     """Return the compiled tree whose rays carry what is asked for.
 
@@ -129,8 +131,7 @@ def make_tree(carry: Carry) -> Callable[..., tuple[Any, ...]]:
     Parameters
     ----------
     carry : Carry
-        Its functions must be those of a module: they are part of the key under which the compiled
-        code is kept.
+        Its functions are part of the key under which the compiled code is kept.
     """
     carried, launch_carried, move, split_carried, strength = carry
     size = FIRST_CARRIED + carried

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.optics.beam import Beam
-from octsim.optics.detector import Detector, acceptance, weight
+from octsim.optics.beam import Beam, DisplacedBeam
+from octsim.optics.detector import Acceptance, Detector, acceptance, weight
 from octsim.optics.scene import Scene
 from octsim.tracing.faces import faces_at
 from octsim.tracing.kernel import FIRST_CARRIED, trace_amplitudes
@@ -79,13 +79,14 @@ def check_reach(scene: Scene, detector: Detector, focus: float, max_intersection
 
 def arrivals(
     scene: Scene,
-    beam: Beam,
+    beam: Beam | DisplacedBeam,
     detector: Detector,
     focus: float,
     max_intersections: int = 11,
     min_amplitude: float = 0.0,
     wavenumber: float = math.nan,
     tree: Callable[..., tuple[Any, ...]] = trace_amplitudes,
+    within: Acceptance | None = None,
 ) -> Arrivals:
     """Trace a beam through a scene, splitting every ray at every surface.
 
@@ -107,6 +108,8 @@ def arrivals(
         At which materials are taken, 1/µm; without one all must be constant.
     tree : callable
         From `octsim.tracing.kernel.make_tree`: it says what the rays carry.
+    within : Acceptance, optional
+        Radii within which rays are accepted; without, those of the detector.
 
     Returns
     -------
@@ -120,7 +123,7 @@ def arrivals(
     """
     check_reach(scene, detector, focus, max_intersections)
     (ray, path), numbers, segments, outcomes = tree(
-        faces_at(scene, wavenumber), beam, detector, acceptance(detector), focus,
+        faces_at(scene, wavenumber), beam, detector, within or acceptance(detector), focus,
         max_intersections, min_amplitude,
     )  # fmt: skip
     length, x, y, vx, vy = numbers[:FIRST_CARRIED]

@@ -8,14 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from literal import spiral
-from toy_carry import LENGTHS_TOO
 
 from octsim.config.load import load_config
 from octsim.instrument.build import detector_of, scene_of
 from octsim.optics.detector import lens_correction
+from octsim.tracing.carry import AMPLITUDE
 from octsim.tracing.kernel import make_tree
+from octsim.tracing.lengths import with_lengths
 from octsim.tracing.tree import arrivals
 
+LENGTHS_TOO = with_lengths(AMPLITUDE, 3)
 CONFIG = load_config({"tracing": {"rays": 300}})
 TESTS = Path(__file__).parents[1]
 
