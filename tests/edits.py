@@ -19,7 +19,11 @@ EDITS: dict[str, tuple[Any, set[str], set[str]]] = {
     "objective.numerical_aperture": (1.1, EVERYTHING, EVERYTHING),
     "objective.focus_distance": ("310 um", EVERYTHING, EVERYTHING),
     "objective.magnification": (21, EVERYTHING, EVERYTHING),
+    "objective.zernike_rays": ("phase", EVERYTHING, EVERYTHING),
+    "beam.wavelength": ("755 nm", EVERYTHING, EVERYTHING),
     "detector.core_diameter": ("4 um", EVERYTHING, EVERYTHING),
+    "detector.falloff": ("top_hat", EVERYTHING, EVERYTHING),
+    "detector.fibre_na": (0.12, EVERYTHING, EVERYTHING),
     "tracing.scheme": ("paths", EVERYTHING, EVERYTHING),
     "tracing.accuracy": (1e-3, set(), set()),  # of the scheme paths
     "tracing.rays": (201, EVERYTHING, EVERYTHING),

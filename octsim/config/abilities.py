@@ -7,9 +7,12 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from octsim.config.dispersion import absorbs, described, without_absorption
+from octsim.config.effects import ZernikeConfig
 from octsim.config.fields import as_text
 from octsim.config.models import Config
-from octsim.config.scene import CylinderConfig
+from octsim.config.scene import AttenuationConfig, CylinderConfig, RefractiveIndex
+from octsim.optics.zernike import noll
 from octsim.schemes.table import SCHEMES, Ability, Scheme
 
 
@@ -29,6 +32,7 @@ def asked_of_scheme(config: Config) -> Iterator[Asked]:
         yield Asked(Ability.PUPIL, "objective.pupil", as_text(pupil))
     if objective.apodisation is not None:
         yield Asked(Ability.APLANATIC, "objective.apodisation", objective.apodisation)
+    yield from _effects(config)
     for name in ("input", "analyser"):
         if (given := getattr(config.polarisation, name)) is not None:
             yield Asked(Ability.POLARISATION, f"polarisation.{name}", _written(given))
@@ -36,13 +40,17 @@ def asked_of_scheme(config: Config) -> Iterator[Asked]:
     for medium, attenuation in scene.attenuation.of.items():
         if attenuation > 0:
             given = f"{attenuation:g} /um"
-            yield Asked(Ability.ATTENUATION, f"scene.attenuation.{medium}", given)
+            ability = _attenuation_of(config, medium)
+            yield Asked(ability, f"scene.attenuation.{medium}", given)
+    yield from _indices(config)
     layers = [layer.medium for layer in scene.layers]
-    if len(layers) > 2 or layers[0] == layers[1]:
-        yield Asked(Ability.LAYERS, "scene.layers", as_text(layers))
     media = [cylinder.medium for cylinder in scene.cylinders]
-    if len(media) != 1:
-        ability = Ability.CYLINDERS if media else Ability.NO_CYLINDER
+    if media and (len(layers) > 2 or layers[0] == layers[1]):
+        yield Asked(Ability.LAYERS, "scene.layers", as_text(layers))
+    if len(media) > 1:
+        yield Asked(Ability.CYLINDERS, "scene.cylinders", as_text(media))
+    elif not media:
+        ability = Ability.PLATES if len(set(layers)) > 1 else Ability.NO_CYLINDER
         yield Asked(ability, "scene.cylinders", as_text(media))
     for place, cylinder in enumerate(scene.cylinders):
         key = f"scene.cylinders.{place}"
@@ -60,10 +68,61 @@ def asked_of_scheme(config: Config) -> Iterator[Asked]:
             yield Asked(Ability.SHELLS, f"{key}.shells", as_text(shells))
 
 
+def _effects(config: Config) -> Iterator[Asked]:
+    objective, beam = config.objective, config.beam
+    plain = config.to_dict()
+    if objective.zernike.of:
+        terms = as_text(plain["objective"]["zernike"])
+        yield Asked(Ability.ZERNIKE, "objective.zernike", terms)
+        if any(_odd_along(number) for number in objective.zernike.of):
+            yield Asked(Ability.ODD_ALONG, "objective.zernike", terms)
+    if objective.focal_shift and objective.focal_shift.moves:
+        shift = as_text(plain["objective"]["focal_shift"])
+        yield Asked(Ability.FOCAL_SHIFT, "objective.focal_shift", shift)
+    if config.detector.falloff != _FALLOFF:
+        fibre = config.detector.falloff == "fibre"
+        ability = Ability.FIBRE_FALLOFF if fibre else Ability.FALLOFF
+        yield Asked(ability, "detector.falloff", config.detector.falloff)
+    if beam.waist is not None:
+        yield Asked(Ability.WAIST, "beam.waist", plain["beam"]["waist"])
+    if (arm := config.interferometer.reference) and arm.amplitude:
+        reference = as_text(plain["interferometer"]["reference"])
+        yield Asked(Ability.REFERENCE, "interferometer.reference", reference)
+
+
+def _odd_along(number: int) -> bool:
+    """Return whether a Zernike term changes its sign with y."""
+    return noll(number)[1] < 0
+
+
+def _indices(config: Config) -> Iterator[Asked]:
+    given = dict(config.scene.refractive_index)
+    for medium in _dispersive(config):
+        key = f"scene.refractive_index.{medium}"
+        yield Asked(Ability.DISPERSION, key, described(given[medium]))
+        if absorbs(given[medium]):
+            yield Asked(_attenuation_of(config, medium), f"{key}.table.kappa", "above zero")
+
+
+def _attenuation_of(config: Config, medium: str) -> Ability:
+    """Return what is asked for by attenuation in a medium."""
+    around = config.scene.objective_medium, config.scene.host_medium
+    return Ability.ATTENUATION_AROUND if medium in around else Ability.ATTENUATION
+
+
+def _dispersive(config: Config) -> list[str]:
+    """Return the media of the scene whose index depends on the wavenumber."""
+    of = config.scene.refractive_index.of
+    media = dict.fromkeys(config.scene.media.values())
+    return [medium for medium in media if medium in of and of[medium].dispersive]
+
+
 def _written(given: str | float) -> str:
     return given if isinstance(given, str) else f"{math.degrees(given):.10g} deg"
 
 
+_FALLOFF = "parabolic"
+_ATTENUATES = {Ability.ATTENUATION, Ability.ATTENUATION_AROUND}
 _OF_CYLINDERS = {
     Ability.OFF_AXIS: "x",
     Ability.AZIMUTH: "azimuth",
@@ -100,13 +159,47 @@ def as_far_as(scheme: Scheme, config: Config) -> Config:
         objective = objective.model_copy(update={"pupil": None})
     if Ability.APLANATIC in asked:
         objective = objective.model_copy(update={"apodisation": None})
+    if {Ability.ZERNIKE, Ability.ODD_ALONG} & asked:
+        objective = objective.model_copy(update={"zernike": ZernikeConfig()})
+    if Ability.FOCAL_SHIFT in asked:
+        objective = objective.model_copy(update={"focal_shift": None})
     if Ability.POLARISATION in asked:
         polarisation = type(polarisation)()
+    beam, detector, interferometer = config.beam, config.detector, config.interferometer
+    if Ability.WAIST in asked:
+        beam = type(beam)()
+    if {Ability.FALLOFF, Ability.FIBRE_FALLOFF} & asked:
+        detector = detector.model_copy(update={"falloff": _FALLOFF})
+    if Ability.REFERENCE in asked:
+        interferometer = type(interferometer)()
     cylinders = tuple(_without(asked, cylinder) for cylinder in scene.cylinders)
-    scene = scene.model_copy(update={"cylinders": cylinders})
-    return config.model_copy(
-        update={"objective": objective, "polarisation": polarisation, "scene": scene}
+    scene = scene.model_copy(
+        update={
+            "cylinders": cylinders,
+            "refractive_index": _indices_for(asked, config),
+            "attenuation": AttenuationConfig() if _ATTENUATES & asked else scene.attenuation,
+        }
     )
+    return config.model_copy(
+        update={
+            "objective": objective, "polarisation": polarisation, "scene": scene, "beam": beam,
+            "detector": detector, "interferometer": interferometer,
+        }
+    )  # fmt: skip
+
+
+def _indices_for(asked: set[Ability], config: Config) -> RefractiveIndex:
+    """Return the indices of a config, constants of the middle of the band where they must be."""
+    indices, k = config.scene.refractive_index, config.spectrum.middle
+    given = dict(indices)
+    media = _dispersive(config)
+    if Ability.DISPERSION in asked:
+        plain = {medium: indices.of[medium].index(k).real for medium in media}
+    elif _ATTENUATES & asked:
+        plain = {medium: without_absorption(given[medium]) for medium in media}
+    else:
+        return indices
+    return RefractiveIndex.model_validate({**given, **plain})
 
 
 def _without(asked: set[Ability], cylinder: CylinderConfig) -> CylinderConfig:

@@ -10,7 +10,7 @@ from octsim.base.errors import ConfigError
 from octsim.config.abilities import beyond_scheme
 from octsim.config.fields import DECIMALS, Range
 from octsim.config.models import Config, FocusLine
-from octsim.config.scene_checks import diameters_of, impossible_scene, scene_remarks
+from octsim.config.scene_checks import diameters_of, impossible_scene, least_index, scene_remarks
 from octsim.config.units import format_length
 from octsim.optics.two_beams import aliasing_step
 from octsim.schemes.cost import MOST_WAVENUMBERS, MOST_WAVES, partial_waves, wavenumbers
@@ -92,6 +92,8 @@ def impossible(config: Config) -> Iterator[str]:
             )
     key, focus = highest_focus(config)
     distance = config.objective.focus_distance
+    if shift := config.objective.focal_shift:
+        focus += shift.highest(*sorted((band.min, band.max)))
     if not distance > focus:
         yield (
             f"objective.focus_distance: {format_length(distance)} given; it must exceed every "
@@ -101,13 +103,13 @@ def impossible(config: Config) -> Iterator[str]:
 
 def _below_objective(config: Config) -> Iterator[str]:
     aperture, scene = config.objective.numerical_aperture, config.scene
-    medium, index = scene.objective_medium, scene.objective_index
+    medium, index = scene.objective_medium, least_index(config, scene.objective_medium)
     if not aperture < index:
         yield (
             f"objective.numerical_aperture: {aperture} given; it must be below the index of "
             f"{medium}, scene.refractive_index.{medium} = {index}"
         )
-    host, host_index = scene.host_medium, scene.host_index
+    host, host_index = scene.host_medium, least_index(config, scene.host_medium)
     scheme = SCHEMES[config.tracing.scheme]
     if scheme.light == "waves" and not aperture < host_index:
         rays = " or ".join(name for name, other in SCHEMES.items() if other.light == "rays")
@@ -131,7 +133,7 @@ def require_possible(config: Config) -> None:
 
 
 def _steep_remarks(config: Config) -> Iterator[str]:
-    aperture, water = config.objective.numerical_aperture, config.scene.host_index
+    aperture, water = config.objective.numerical_aperture, config.host_index
     scheme = SCHEMES[config.tracing.scheme]
     if scheme.steepest * water < aperture:
         yield (
@@ -151,8 +153,9 @@ def _budget_remarks(config: Config) -> Iterator[str]:
     digits = -math.log10(tracing.accuracy)
     diameters = diameters_of(config)
     key, largest = max(diameters.items(), key=lambda item: item[1])
-    size = k_max * max(scene.swept_index, scene.host_index) * largest / 2
-    reach = scene.swept_index * largest + scene.host_index * scene.swept_gap
+    swept, host = config.swept_index, config.host_index
+    size = k_max * max(swept, host) * largest / 2
+    reach = swept * largest + host * scene.swept_gap
     waves = partial_waves(size, digits)
     nodes = wavenumbers(reach, k_max - k_min, digits)
     instead = "so spectra will say budget_spent; give less, or a tracing.scheme of rays"
@@ -189,7 +192,7 @@ def rounding_remarks(config: Config) -> list[str]:
             f"{format_length(smallest)}, so rounding of heights can move the phase by more than "
             "1e-9 rad"
         )
-    aperture, water = config.objective.numerical_aperture, config.scene.host_index
+    aperture, water = config.objective.numerical_aperture, config.host_index
     if water < aperture:
         said.append(
             f"objective.numerical_aperture: {aperture} is above the index of water, {water}, so "
@@ -203,17 +206,17 @@ def plain_remarks(config: Config) -> list[str]:
     """Return what is possible but likely not meant, a line each, of a config without a grid."""
     said = [*_steep_remarks(config), *_budget_remarks(config), *scene_remarks(config)]
     band, diameters = config.spectrum.wavelength, config.sweep.diameters
-    n_neuron = config.scene.swept_index
     k_min, k_max = 2 * math.pi / band.max, 2 * math.pi / band.min
     step = (diameters.stop - diameters.start) / (diameters.num - 1)
-    largest = aliasing_step(n_neuron, k_min, k_max)
+    largest = aliasing_step(config.swept_material, k_min, k_max)
     if step > largest:
         said.append(
             f"sweep.diameters: a step of {step:.6g} um is above π/(n_neuron (k_min + k_max)) = "
             f"{largest:.6g} um, so the unwrapped phase is ambiguous and its slope can be wrong; "
             "raise sweep.diameters.num"
         )
-    oscillations = n_neuron * (k_max - k_min) / math.pi  # of cos(2ndk) over the band, per µm
+    # of cos(2ndk) over the band, per µm
+    oscillations = config.swept_group_index * (k_max - k_min) / math.pi
     if oscillations * diameters.start < 1:
         said.append(
             f"sweep.diameters.start: {format_length(diameters.start)} is less than one oscillation "

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Discriminator, PlainSerializer, Tag, WithJsonSchema
 
+from octsim.config.effects import FocalShift, Zernike
 from octsim.config.fields import PositiveLength, PositiveNumber, Section, absent
 from octsim.config.fields import key as _key
 from octsim.config.units import ANGLE, format_angle, parse_angle, schema_of
@@ -61,6 +62,19 @@ class Objective(Section):
     )
     apodisation: Annotated[Literal["aplanatic"] | None, BeforeValidator(absent)] = _key(
         None, "aplanatic: √cos θ in, 1/√cos θ out; null or none is the scheme's own"
+    )
+    zernike: Zernike = _key(
+        {},
+        "aberrations, in and out, by Noll's number or name: {11: 10 nm} or {spherical: 10 nm}; the "
+        "rms of each over the pupil, and a positive one is a longer way",
+    )
+    zernike_rays: Literal["normal", "phase"] = _key(
+        "normal", "rays are turned to stay normal to the wavefront, or take its phase alone"
+    )
+    focal_shift: FocalShift = _key(
+        None,
+        "a focus that is higher by linear (λ − reference) + quadratic (λ − reference)², as "
+        "{reference: 755 nm, linear: 0.4 um/um, quadratic: 0 um/um^2}; null or none is one focus",
     )
 
 

@@ -2,13 +2,20 @@
 
 import difflib
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
 from octsim.config.archive import Creator
+from octsim.config.dispersion import TAGS
+from octsim.config.effects import (
+    FOCAL_SHIFT_FORM,
+    REFERENCE_FORM,
+    FocalShiftConfig,
+    ReferenceArmConfig,
+)
 from octsim.config.models import FIXED, Config, FocusLine, Grid
 from octsim.config.scene import Layer, Shell
 from octsim.config.units import ANGLE, LENGTH
@@ -34,6 +41,21 @@ def known_keys(model: type[BaseModel] | BaseModel = Config, prefix: str = "") ->
         yield from (f"sweep.focus.{name}" for name in FocusLine.model_fields)
         yield from (f"archive.creators.{name}" for name in Creator.model_fields)
         yield from ("objective.pupil.gaussian", "objective.pupil.fibre")
+        yield from _of_section("objective.focal_shift", model.objective.focal_shift)
+        yield from _of_section("interferometer.reference", model.interferometer.reference)
+
+
+_OPTIONAL_SECTIONS: Mapping[str, type[BaseModel]] = {
+    "objective.focal_shift": FocalShiftConfig, "interferometer.reference": ReferenceArmConfig,
+}  # fmt: skip
+_FORMS = {"objective.focal_shift": FOCAL_SHIFT_FORM, "interferometer.reference": REFERENCE_FORM}
+"""What stands there, where it is no mapping or unknown."""
+
+
+def _of_section(key: str, given: BaseModel | None) -> Iterator[str]:
+    """Return the keys of a section that is not there by default, if it is not given."""
+    if given is None:
+        yield from (f"{key}.{name}" for name in _OPTIONAL_SECTIONS[key].model_fields)
 
 
 def _of_any_entry(key: str) -> str:
@@ -61,6 +83,10 @@ def nearest_key(key: str) -> str:
     return difflib.get_close_matches(key, keys, n=1, cutoff=0)[0]
 
 
+_OF_DISPERSIONS = (
+    "cauchy", "sellmeier", "table", "unit", "B", "C", "wavelength", "n", "kappa",
+)  # fmt: skip
+_LONGEST = 300
 _OF_TWO_KINDS = (
     ["sweep", "focus"],
     ["processing", "window"],
@@ -79,6 +105,9 @@ def explain(error: ErrorDetails) -> str:
     place = [str(part) for part in error["loc"]]
     if place[:2] in _OF_TWO_KINDS:
         del place[2:3]  # which of the two it was read as
+    of_index = place[:2] == ["scene", "refractive_index"]
+    if of_index and len(place) > 3 and place[3] in TAGS:
+        del place[3]
     path = ".".join(place)
     entry = _of_any_entry(path)
     listed = isinstance(error["input"], list | tuple) and error["type"] != "model_type"
@@ -91,11 +120,15 @@ def explain(error: ErrorDetails) -> str:
         )
     if "." in place[-1] and error["type"] == "extra_forbidden":
         return f"{path}: unknown key; keys nest, so write {place[-1].replace('.', ': {')}: ...}}"
+    if error["type"] == "extra_forbidden" and of_index:
+        nearest = difflib.get_close_matches(place[-1], _OF_DISPERSIONS, n=1, cutoff=0)[0]
+        return f"{path}: unknown key; the nearest that a dispersion has is {nearest}"
     if error["type"] == "extra_forbidden":
         return f"{path}: unknown key; the nearest known one is {nearest_key(entry)}"
     if error["type"] == "missing":
         return f"{path}: missing; it has no default, so give it a value"
     message = error["msg"].removeprefix("Value error, ").replace("Input should", "it should")
+    message = message.replace("Value should", "it should")
     if path == "run":
         message = (
             "it should be a plain name as text: letters, digits, '.', '_' and '-', no path, 100 at "
@@ -112,6 +145,8 @@ def explain(error: ErrorDetails) -> str:
             "it should be 'none', 'linear' or {reference: [[first, last], ...]}, the first and the "
             "last sample of each time at rest, counted from 1"
         )
+    elif path in _FORMS and error["type"] == "model_type":
+        message = _FORMS[path]
     elif error["type"] in {"model_type", "model_attributes_type"}:
         message = "it should be a mapping of keys to values"
     elif path == "objective.pupil":
@@ -136,7 +171,13 @@ def explain(error: ErrorDetails) -> str:
         message = "it should be a whole number, written out as digits"
     elif error["type"] in {"greater_than_equal", "less_than_equal"} and unit_of(path) != "1":
         message += f" {unit_of(path)}"
-    return f"{path}: {error['input']!r} given; {message}"
+    return f"{path}: {_shown(error['input'])} given; {message}"
+
+
+def _shown(value: object) -> str:
+    """Write what was given; of a long table its start."""
+    text = repr(value)
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]} …"
 
 
 def unit_of(key: str) -> str:
@@ -156,5 +197,8 @@ _WITHOUT_DEFAULT = {
     "sweep.focus.intercept": LENGTH.unit, "objective.pupil.fibre": LENGTH.unit,
     "scene.cylinders.diameter": LENGTH.unit, "scene.cylinders.gap": LENGTH.unit,
     "scene.cylinders.shells.thickness": LENGTH.unit, "scene.layers.thickness": LENGTH.unit,
+    "objective.focal_shift.reference": LENGTH.unit,
+    "interferometer.reference.length": LENGTH.unit, "beam.waist": LENGTH.unit,
+    "beam.wavelength": LENGTH.unit, "detector.mode_field_diameter": LENGTH.unit,
     "polarisation.input": ANGLE.unit, "polarisation.analyser": ANGLE.unit,
 }  # fmt: skip

@@ -5,6 +5,7 @@ The models are the one source: `config/schema.json` and `docs/config.md` are gen
 """
 
 from collections.abc import Mapping
+from math import pi
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag
@@ -12,6 +13,7 @@ from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag
 from octsim.config.archive import ArchiveConfig
 from octsim.config.calibration import ActionPotential, Calibration, ExpansionConfig
 from octsim.config.design import Design
+from octsim.config.effects import BeamConfig, DetectorConfig, Interferometer
 from octsim.config.fields import (
     DiameterRange,
     FocusRange,
@@ -19,7 +21,6 @@ from octsim.config.fields import (
     Number,
     Position,
     PositiveLength,
-    PositiveNumber,
     Section,
     Wavelength,
 )
@@ -27,9 +28,12 @@ from octsim.config.fields import key as _key
 from octsim.config.light import FibreMode, GaussianFill, PolarisationConfig
 from octsim.config.light import Objective as Objective
 from octsim.config.processing import Processing as Processing
+from octsim.config.resources import Budget, Scatter
+from octsim.config.resources import Cache as Cache
 from octsim.config.scene import RefractiveIndex as RefractiveIndex
 from octsim.config.scene import SceneConfig as SceneConfig
 from octsim.optics.band import wavenumbers
+from octsim.optics.materials import Material, group_index
 from octsim.schemes.table import COUNTED_RAYS, PRESETS, SCHEMES
 
 if TYPE_CHECKING:
@@ -42,14 +46,6 @@ if TYPE_CHECKING:
     PresetName: TypeAlias = str
 else:  # a scheme is a row of the table, and nothing more to be listed here
     SchemeName, PresetName = Literal[tuple(SCHEMES)], Literal[tuple(PRESETS)]
-
-
-class DetectorConfig(Section):
-    """The fibre that collects the light."""
-
-    core_diameter: PositiveLength = _key(
-        "4.4 um", "of the fibre; R_det = core_diameter / (2 magnification)"
-    )
 
 
 class Tracing(Section):
@@ -91,6 +87,12 @@ class Spectrum(Section):
     def wavenumbers(self) -> "NDArray[np.float64]":
         """Return the wavenumbers 2π/λ, evenly spaced and increasing, shape (K,), 1/µm."""
         return wavenumbers(self.wavelength.min, self.wavelength.max, self.samples)
+
+    @property
+    def middle(self) -> float:
+        """Wavenumber in the middle of the band, 1/µm."""
+        band = self.wavelength
+        return (2 * pi / band.max + 2 * pi / band.min) / 2
 
 
 class FocusScan(Section):
@@ -188,30 +190,6 @@ class Grid(Section):
         return self.model_extra or {}
 
 
-class Cache(Section):
-    """Where traced points are kept; no result depends on it."""
-
-    file: Annotated[str, Field(min_length=1)] = _key(
-        ".octsim/points", "folder for them, beside the run's results or one that several share"
-    )
-    gigabytes: Annotated[Number, Field(ge=0, le=1e6)] = _key(
-        4.0, "its largest size; 0 keeps and reads nothing"
-    )
-
-
-class Budget(Section):
-    """What a run may take by its estimate; raise it to confirm a larger one."""
-
-    cpu_hours: PositiveNumber = _key(1.0, "processor time")
-    disk_gigabytes: PositiveNumber = _key(20.0, "datasets of the run")
-
-
-class Scatter(Section):
-    """How a stage that takes long is scattered over several jobs; no result depends on it."""
-
-    minutes: PositiveNumber = _key(5.0, "of processor time in a job, by the run's estimate")
-
-
 _NO_RESULT = ("archive", "cache", "scatter")
 
 
@@ -230,8 +208,10 @@ class Config(Section):
     )
     scene: SceneConfig = SceneConfig()
     objective: Objective = Objective()
+    beam: BeamConfig = BeamConfig()
     polarisation: PolarisationConfig = PolarisationConfig()
     detector: DetectorConfig = DetectorConfig()
+    interferometer: Interferometer = Interferometer()
     tracing: Tracing = Tracing()
     spectrum: Spectrum = Spectrum()
     focus_scan: FocusScan = FocusScan()
@@ -255,6 +235,50 @@ class Config(Section):
             return self.objective.pupil
         own = SCHEMES[self.tracing.scheme].mode_field_diameter
         return "uniform" if own is None else FibreMode.model_construct(fibre=own)
+
+    @property
+    def objective_material(self) -> Material:
+        """What is around the objective."""
+        return self.scene.objective_material
+
+    @property
+    def host_material(self) -> Material:
+        """What is around the cylinders."""
+        return self.scene.host_material
+
+    @property
+    def swept_material(self) -> Material:
+        """What is swept is of this."""
+        return self.scene.swept_material
+
+    @property
+    def objective_index(self) -> float:
+        """Refractive index around the objective, in the middle of the band."""
+        return self._index_of(self.objective_material)
+
+    @property
+    def host_index(self) -> float:
+        """Refractive index around the cylinders, in the middle of the band."""
+        return self._index_of(self.host_material)
+
+    @property
+    def swept_index(self) -> float:
+        """Refractive index of what is swept, in the middle of the band."""
+        return self._index_of(self.swept_material)
+
+    @property
+    def swept_group_index(self) -> float:
+        """Group index of what is swept, in the middle of the band: of optical depths."""
+        return group_index(self.swept_material, self.spectrum.middle)
+
+    @property
+    def dispersive(self) -> bool:
+        """Whether anything in the scene has an index that depends on the wavenumber."""
+        of = self.scene.refractive_index.of
+        return any(of[medium].dispersive for medium in self.scene.media.values())
+
+    def _index_of(self, material: Material) -> float:
+        return material.index(self.spectrum.middle).real
 
     def to_dict(self) -> dict[str, Any]:
         """Return the config as plain data that `load_config` reads back to the same bits."""

@@ -6,25 +6,30 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from octsim.config.dispersion import described, material_of, span_of
 from octsim.config.models import Config
 from octsim.config.scene import SWEPT, CylinderConfig, SceneConfig
 from octsim.config.units import format_length
-from octsim.schemes.table import SCHEMES, Ability
+from octsim.optics.materials import Material, Sellmeier
+from octsim.schemes.table import SCHEMES
 
 _THESIS = ("glass", "water", "neuron")
+_TRIED = 128  # steps over the band in which an index is looked at
+_PISTON = 1
+_SMALL_RMS = 5e-3  # µm
 
 
 def impossible_scene(config: Config) -> Iterator[str]:
     """Return what is impossible of a plain config's scene, a line each."""
     scene = config.scene
-    if wrong := [*_media(scene), *_layers(scene)] or [*_swept(scene)]:
+    if wrong := [*_media(scene), *_layers(scene)] or [*_swept(scene), *_indices(config)]:
         yield from wrong
     else:
         yield from _sizes(config)
 
 
 def _media(scene: SceneConfig) -> Iterator[str]:
-    known, used = scene.refractive_index.of, set(scene.media.values())
+    known, used = dict(scene.refractive_index), set(scene.media.values())
     for key, medium in scene.media.items():
         if medium not in known:
             nearest = difflib.get_close_matches(medium, known, n=1, cutoff=0)[0]
@@ -36,9 +41,9 @@ def _media(scene: SceneConfig) -> Iterator[str]:
         if medium not in used and medium not in _THESIS:
             nearest = difflib.get_close_matches(medium, sorted(used), n=1, cutoff=0)[0]
             yield (
-                f"scene.refractive_index.{medium}: {index} given, but nothing in the scene is of "
-                f"{medium}; name it in scene.layers or scene.cylinders, or leave it out; the "
-                f"nearest name in use is {nearest}"
+                f"scene.refractive_index.{medium}: {described(index)} given, but nothing in the "
+                f"scene is of {medium}; name it in scene.layers or scene.cylinders, or leave it "
+                f"out; the nearest name in use is {nearest}"
             )
     for medium in scene.attenuation.of:
         if medium not in used:
@@ -46,6 +51,60 @@ def _media(scene: SceneConfig) -> Iterator[str]:
                 f"scene.attenuation.{medium}: given, but nothing in the scene is of {medium}; "
                 f"leave it out, or name one of {', '.join(sorted(used))}"
             )
+
+
+def _indices(config: Config) -> Iterator[str]:
+    """Say which dispersions of the scene are not known, or impossible, somewhere in the band."""
+    given = dict(config.scene.refractive_index)
+    ends = config.spectrum.wavelength
+    shortest, longest = sorted((ends.min, ends.max))
+    for medium in dict.fromkeys(config.scene.media.values()):
+        key, index = f"scene.refractive_index.{medium}", given[medium]
+        material, span = material_of(index), span_of(index)
+        if span and not (span[0] <= shortest and longest <= span[1]):
+            yield (
+                f"{key}: {described(index)} given, which is known from {format_length(span[0])} to "
+                f"{format_length(span[1])}, but spectrum.wavelength is from "
+                f"{format_length(shortest)} to {format_length(longest)}; give a dispersion that "
+                "spans the band, or a narrower band"
+            )
+        elif material.dispersive and (wrong := _impossible_index(material, shortest, longest)):
+            wavelength, found = wrong
+            yield (
+                f"{key}: {described(index)} given, whose index is {found:.6g} at "
+                f"{wavelength:.6g} um, in the band; it should be from 1 to 10 (wavelengths in um)"
+            )
+
+
+def _impossible_index(
+    material: Material, shortest: float, longest: float
+) -> tuple[float, float] | None:
+    """Return a wavelength (µm) of a band at which an index is beyond its limits, and the index."""
+    tried = [2 * math.pi / k for k in _over_band(shortest, longest)]
+    if isinstance(material, Sellmeier):
+        # however narrow they are
+        poles = (math.sqrt(c) for c in material.c if c > 0)
+        tried = [pole for pole in poles if shortest <= pole <= longest] + tried
+    for wavelength in tried:
+        index = material.index(2 * math.pi / wavelength).real
+        if not 1 <= index <= 10:
+            return wavelength, index
+    return None
+
+
+def _over_band(shortest: float, longest: float) -> list[float]:
+    """Return wavenumbers of a band between two wavelengths, µm, both ends included, 1/µm."""
+    lowest, step = 2 * math.pi / longest, 2 * math.pi / shortest - 2 * math.pi / longest
+    return [lowest + step * place / _TRIED for place in range(_TRIED)] + [2 * math.pi / shortest]
+
+
+def least_index(config: Config, medium: str) -> float:
+    """Return the smallest refractive index that a medium has in the band."""
+    material, band = config.scene.refractive_index.of[medium], config.spectrum.wavelength
+    if not material.dispersive:
+        return material.index(config.spectrum.middle).real
+    over = _over_band(*sorted((band.min, band.max)))
+    return min(material.index(k).real for k in over)
 
 
 def _layers(scene: SceneConfig) -> Iterator[str]:
@@ -169,14 +228,30 @@ def scene_remarks(config: Config) -> Iterator[str]:
             )
         if cylinder.elevation:
             yield _met(config, key, cylinder)
-    aperture, index = config.objective.numerical_aperture, scene.host_index
-    split = Ability.POLARISATION not in SCHEMES[config.tracing.scheme].honours
+    yield from _aberration_remarks(config)
+    aperture, index = config.objective.numerical_aperture, config.host_index
+    given, rays = config.polarisation, SCHEMES[config.tracing.scheme].light == "rays"
+    split = rays and given.input is None and given.analyser is None
     if index < aperture and split:
         yield (
             f"objective.numerical_aperture: {aperture} is above the index of {scene.host_medium}, "
             f"{index}, with polarisation.input: none: the thesis's split makes light off the plane "
-            "too bright where the focus is off the law; compare with tracing.scheme: fullwave"
+            "too bright where the focus is off the law; give polarisation.input: unpolarised"
         )
+
+
+def _aberration_remarks(config: Config) -> Iterator[str]:
+    objective = config.objective
+    by_rays = SCHEMES[config.tracing.scheme].light == "rays"
+    if not by_rays or objective.zernike_rays != "normal":
+        return
+    for number, rms in objective.zernike.of.items():
+        if number != _PISTON and abs(rms) > _SMALL_RMS:
+            yield (
+                f"objective.zernike.{number}: {format_length(rms)} moves rays by less than the "
+                "diffraction spot, and they exaggerate it, as the detector cuts by position; "
+                "compare with tracing.scheme: fullwave"
+            )
 
 
 def _met(config: Config, key: str, cylinder: CylinderConfig) -> str:

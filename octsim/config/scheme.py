@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
+from octsim.config.derive import parts_of
+from octsim.config.light import FibreMode
 from octsim.config.models import Config
 from octsim.schemes.table import SCHEMES, Scheme
 
@@ -17,6 +19,40 @@ def options_of(config: Config) -> Mapping[str, Any]:
     return scheme_of(config).chosen(config.tracing)
 
 
+def sampled(config: Config) -> bool:
+    """Return whether the light of a plain config is rays with a field at the spectrum's samples.
+
+    Such rays differ from wavenumber to wavenumber, or they have a polarisation.
+    """
+    polarised = (config.polarisation.input, config.polarisation.analyser) != (None, None)
+    beam, shift = config.beam, config.objective.focal_shift
+    varies = (
+        config.dispersive
+        or (shift is not None and shift.moves)
+        or (beam.waist is not None and beam.wavelength == "each")
+        or config.detector.falloff == "fibre"
+        or isinstance(config.pupil, FibreMode)
+    )
+    return scheme_of(config).light == "rays" and (polarised or varies)
+
+
 def light_keys(config: Config) -> tuple[str, ...]:
     """Return the dotted keys that the light of a point of a plain config depends on."""
-    return scheme_of(config).keys
+    scheme = scheme_of(config)
+    if not sampled(config):
+        return scheme.keys
+    return tuple(dict.fromkeys((*scheme.keys, "polarisation", "spectrum")))
+
+
+def traced_keys(config: Config) -> Mapping[str, Any]:
+    """Return what light depends on as it is traced, by dotted key, as plain data.
+
+    Where rays serve all wavenumbers, what media take is taken from them later: of that it counts
+    whether there is any, as the lengths of ways are kept then.
+    """
+    read = parts_of(config.to_dict(), *light_keys(config))
+    scene = read.get("scene")
+    if scheme_of(config).light == "waves" or sampled(config) or not isinstance(scene, Mapping):
+        return read
+    taken = any(config.scene.attenuation.of.values())
+    return {**read, "scene": {**scene, "attenuation": taken}}

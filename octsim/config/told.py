@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from octsim.config.grid import combinations
 from octsim.config.models import Config, SceneConfig
 from octsim.config.scene import CylinderConfig, Layer
+from octsim.optics.shipped_materials import SHIPPED
 from octsim.schemes.table import SCHEMES
 
 _HANDED = {"left": ("(1, +i)/√2", "positive", "right"), "right": ("(1, −i)/√2", "negative", "left")}
@@ -18,10 +19,10 @@ def told(config: Config) -> list[str]:
     """
     first = next(combinations(config)).config
     said = [*_conventions(first)]
-    if first.scene != SceneConfig() or SCHEMES[first.tracing.scheme].honours:
+    if first.scene != SceneConfig() or SCHEMES[first.tracing.scheme].light == "waves":
         varied = [key for key in config.grid.varied if key.startswith("scene")]
         among = f" (the first of a grid over {', '.join(varied)})" if varied else ""
-        said.insert(0, f"scene: {_scene(first.scene)}{among}")
+        said.insert(0, f"scene: {_scene(first)}{among}")
     return said
 
 
@@ -33,13 +34,18 @@ def _conventions(config: Config) -> Iterator[str]:
             f"polarisation.input: {state} is {vector} with fields e^(−iωt), of {helicity} helicity "
             f"(Hecht); IEEE calls it {other}-handed"
         )
+    given, used = dict(config.scene.refractive_index), config.scene.media.values()
+    for medium in dict.fromkeys(used):
+        if isinstance(name := given[medium], str):
+            yield f"scene.refractive_index.{medium}: {name} is by {SHIPPED[name].origin}"
 
 
-def _scene(scene: SceneConfig) -> str:
-    host = f"in {_medium(scene, scene.host_medium)}"
-    cylinders = [_cylinder(scene, place) for place in range(len(scene.cylinders))]
-    between = [_layer(scene, layer) for layer in scene.layers[1:-1]]
-    below, above = (_medium(scene, scene.layers[place].medium) for place in (0, -1))
+def _scene(config: Config) -> str:
+    scene = config.scene
+    host = f"in {_medium(config, scene.host_medium)}"
+    cylinders = [_cylinder(config, place) for place in range(len(scene.cylinders))]
+    between = [_layer(config, layer) for layer in scene.layers[1:-1]]
+    below, above = (_medium(config, scene.layers[place].medium) for place in (0, -1))
     if not cylinders:
         return f"{', '.join(between)} between {below} and {above}"
     if not between:
@@ -47,25 +53,30 @@ def _scene(scene: SceneConfig) -> str:
     return f"{' and '.join(cylinders)}, {host}; layers: {', '.join([below, *between, above])}"
 
 
-def _medium(scene: SceneConfig, name: str) -> str:
-    return f"{name} (n {scene.refractive_index.of[name]:g})"
+def _medium(config: Config, name: str) -> str:
+    material, k = config.scene.refractive_index.of[name], config.spectrum.middle
+    n = material.index(k).real
+    if not material.dispersive:
+        return f"{name} (n {n:g})"
+    return f"{name} (n {n:.3f} at {2e3 * math.pi / k:.0f} nm, dispersive)"
 
 
-def _layer(scene: SceneConfig, layer: Layer) -> str:
+def _layer(config: Config, layer: Layer) -> str:
     thick = f"{layer.thickness:g} um" if isinstance(layer.thickness, float) else "swept thickness"
-    return f"{_medium(scene, layer.medium)} of {thick}"
+    return f"{_medium(config, layer.medium)} of {thick}"
 
 
-def _cylinder(scene: SceneConfig, place: int) -> str:
+def _cylinder(config: Config, place: int) -> str:
+    scene = config.scene
     cylinder = scene.cylinders[place]
     below = scene.layers[scene.host - 1].medium
     size = f"{cylinder.diameter:g} um" if cylinder.diameter else "swept diameter"
     if size.startswith("swept") and len(scene.cylinders) > 1:
         size += f" (scene.cylinders.{place})"
-    gap = f"{1000 * scene.gap_of(cylinder):g} nm above {_medium(scene, below)}"
-    words = [f"{_medium(scene, cylinder.medium)} of {size}", *_tilts(cylinder), gap]
+    gap = f"{1000 * scene.gap_of(cylinder):g} nm above {_medium(config, below)}"
+    words = [f"{_medium(config, cylinder.medium)} of {size}", *_tilts(cylinder), gap]
     words += [
-        f"shell of {_medium(scene, shell.medium)}, {1000 * shell.thickness:g} nm thick"
+        f"shell of {_medium(config, shell.medium)}, {1000 * shell.thickness:g} nm thick"
         for shell in cylinder.shells
     ]
     return ", ".join(words)

@@ -4,26 +4,31 @@ from collections.abc import Iterator, Mapping
 from typing import Any, get_args
 
 from octsim.config.derive import merge
+from octsim.config.effects import DetectorConfig
 from octsim.config.fields import number
 from octsim.config.grid import as_text, combinations, value_at
 from octsim.config.messages import known_keys
 from octsim.config.models import Config
 from octsim.config.processing import OPTIONS, Processing, Sinusoid, options_read
-from octsim.schemes.table import COUNTED_RAYS, PRESETS, SCHEMES, Ability
+from octsim.schemes.table import COUNTED_RAYS, PRESETS, SCHEMES
 
 _CHOICES: Mapping[str, tuple[str, ...]] = {
     "tracing.scheme": tuple(SCHEMES),
     "processing.estimator": get_args(Processing.model_fields["estimator"].annotation),
     "processing.centre": get_args(Processing.model_fields["centre"].annotation),
+    "detector.falloff": get_args(DetectorConfig.model_fields["falloff"].annotation),
     "processing.sinusoid.weights": get_args(Sinusoid.model_fields["weights"].annotation),
 }
 """Keys that choose which others are read, and their values."""
 _PRESET = "tracing.preset"
+_OF_FALLOFFS = {"gaussian": "mode_field_diameter", "fibre": "fibre_na"}
+"""What falloffs are of, by their names."""
 _OPTIONAL = {
     _PRESET,
     *(f"tracing.{name}" for scheme in SCHEMES.values() for name in scheme.options),
     *(f"processing.{name}" for names in OPTIONS.values() for name in names),
     "processing.centre_degree",
+    *(f"detector.{name}" for name in _OF_FALLOFFS.values()),
 }
 """Keys that some choices read, and others do not."""
 _CALIBRATION = ("calibration", "expansion", "action_potential")
@@ -95,7 +100,7 @@ def unread(config: Config, asked: Mapping[str, Any]) -> list[str]:
 
 
 def unread_scene(config: Config, asked: Mapping[str, Any]) -> list[str]:
-    """Say, a line each, which keys of scene and objective are given in vain.
+    """Say, a line each, which keys of scene, objective and beam are given in vain.
 
     Parameters
     ----------
@@ -104,15 +109,16 @@ def unread_scene(config: Config, asked: Mapping[str, Any]) -> list[str]:
     asked : mapping
         Dotted keys that a user asks for, and their values.
     """
-    every = [at.config for at in combinations(config, "scene", "objective", *_CHOICES, _PRESET)]
+    varied = ("scene", "objective", "beam", *_CHOICES, _PRESET)
+    every = [at.config for at in combinations(config, *varied)]
     used = {medium for one in every for medium in one.scene.media.values()}
     gaps = any(one.gap is None for at in every for one in at.scene.cylinders)
-    aplanatic = all(Ability.APLANATIC in SCHEMES[one.tracing.scheme].honours for one in every)
+    aplanatic = all(SCHEMES[one.tracing.scheme].light == "waves" for one in every)
     said = []
     for given, value in asked.items():
         key = given.removeprefix("grid.")
-        index = key.removeprefix("scene.refractive_index.")
-        if index != key and index not in used:
+        index = key.removeprefix("scene.refractive_index.").split(".")[0]
+        if key.startswith("scene.refractive_index.") and index not in used:
             said.append(
                 f"{given}: {as_text(value)} given, but nothing in the scene is of {index}; leave "
                 "it out, or name it in scene.layers or scene.cylinders"
@@ -122,12 +128,29 @@ def unread_scene(config: Config, asked: Mapping[str, Any]) -> list[str]:
                 f"{given}: {as_text(value)} given, but each cylinder has a gap of its own; leave "
                 "one of them out"
             )
+        needed, off = _NEEDED.get(key, ("", None))
+        if needed and value != off and not any(_has(one, needed) for one in every):
+            said.append(
+                f"{given}: {as_text(value)} given, but {needed} is not, and nothing else reads it; "
+                f"leave it out, or give {needed}"
+            )
         if key == "objective.apodisation" and value == "none" and aplanatic:
             said.append(
                 f"{given}: none is read as not given, and tracing.scheme: "
                 f"{every[0].tracing.scheme} is aplanatic of itself; leave it out"
             )
     return said
+
+
+_NEEDED = {
+    "objective.zernike_rays": ("objective.zernike", "normal"),
+    "beam.wavelength": ("beam.waist", "each"),
+}
+"""Keys that are read where another is given, and what they are by default."""
+
+
+def _has(config: Config, key: str) -> bool:
+    return bool(config.objective.zernike.of if key == "objective.zernike" else config.beam.waist)
 
 
 def _line(given: str, value: Any, chosen: list[Config], keys: set[str], elsewhere: str) -> str:
@@ -162,6 +185,8 @@ def _read(config: Config) -> set[str]:
     read = {f"tracing.{name}" for name in SCHEMES[tracing.scheme].options}
     if tracing.preset and PRESETS[tracing.preset]["scheme"] == tracing.scheme:
         read.add(_PRESET)
+    if config.detector.falloff in _OF_FALLOFFS:
+        read.add(f"detector.{_OF_FALLOFFS[config.detector.falloff]}")
     return read | {f"processing.{name}" for name in options_read(config.processing)}
 
 

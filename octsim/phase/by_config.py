@@ -50,19 +50,20 @@ def estimator_of(config: Config, foci: Array) -> EstimatorOf:
         Foci of all of the sweep's diameters, µm; NaN where there is no law.
     """
     processing, k = config.processing, config.spectrum.wavenumbers()
-    n_neuron = config.scene.swept_index
+    index = config.swept_group_index
     if processing.estimator == "fft" or np.isnan(foci).any():
         return lambda _, diameter: Phases(*np.full((2, diameter.size), np.nan))
     if processing.estimator != "maximum_likelihood":
-        return lambda spectra, diameter: phases(spectra, k, n_neuron * diameter, processing)
+        return lambda spectra, diameter: phases(spectra, k, index * diameter, processing)
     # here, as a run of any other estimator needs no tracing any more
     from octsim.phase.modelled_spectra import model_of_sweep
 
-    model, predicted = model_of_sweep(config, foci), predicted_phase_slope(n_neuron, k[0], k[-1])
+    model = model_of_sweep(config, foci)
+    predicted = predicted_phase_slope(config.swept_material, k[0], k[-1])
 
     def likeliest(spectra: Array, _: Array) -> Phases:
         found = maximum_likelihood(spectra, model, processing.read_noise)
-        return Phases(predicted * found, n_neuron * found)
+        return Phases(predicted * found, index * found)
 
     return likeliest
 
@@ -74,10 +75,11 @@ def ideal_phases(config: Config, spectra: Array, diameter: Array, wavenumber: Ar
     fringe's order is counted; NaN where they are not resolved. Maximum likelihood, whose model they
     are not, has the prediction's.
     """
-    n_neuron, processing = config.scene.swept_index, config.processing
+    processing = config.processing
     if processing.estimator == "maximum_likelihood":
-        return predicted_phase_slope(n_neuron, wavenumber[0], wavenumber[-1]) * diameter
-    depth, found = n_neuron * diameter, np.full(diameter.size, np.nan)
+        slope = predicted_phase_slope(config.swept_material, wavenumber[0], wavenumber[-1])
+        return slope * diameter
+    depth, found = config.swept_group_index * diameter, np.full(diameter.size, np.nan)
     resolved = unusable(spectra, wavenumber, depth) != FringeStatus.NOT_RESOLVED
     if resolved.any():
         found[resolved] = phases(

@@ -86,7 +86,7 @@ def exact_slopes(config: Config, foci: Array) -> ExactSlopes:
             continue
         slope[place] = local_slope(
             np.stack([found.intensity for found in spectra]), instrument.wavenumber,
-            diameters[near], exact.scene.swept_index, config.processing,
+            diameters[near], exact.swept_group_index, config.processing,
         )  # fmt: skip
     return ExactSlopes(slope, status)
 

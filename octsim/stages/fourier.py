@@ -100,7 +100,7 @@ def _transformed(layout: Layout, stored: Stored) -> Iterator[Part]:
 def _fringe(config: Config, part: xr.Dataset, magnitude: NDArray[np.float64]) -> Fringe:
     """Look for the fringe of spectra whose components' magnitudes (D, C) are known."""
     k = config.spectrum.wavenumbers()
-    depth = config.scene.swept_index * part["diameter"].values
+    depth = config.swept_group_index * part["diameter"].values
     controlled = part["accuracy_status"].values != AccuracyStatus.NOT_CONTROLLED
     error = np.where(controlled, part["intensity_error"].values, 0.0)
     found = fringe_at(part["intensity"].values, k, depth, error)

@@ -13,7 +13,7 @@ from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.instrument.build import surface_names
-from octsim.stages.detections import stored_light
+from octsim.stages.detections import stored_rays
 from octsim.stages.fields import stored_waves
 from octsim.stages.kept_light import stored_by_kind
 from octsim.stages.ray_shares import SAMPLES, ray_shares, strongest_first
@@ -99,7 +99,7 @@ def _shared(
         found: list[dict[str, NDArray[Any]]]
         if kind == "rays":
             place = slice(0, codes.size)
-            found = [ray_shares(light, codes, k[0], step) for light in stored_light(part)]
+            found = [ray_shares(light, codes, k[0], step) for light in stored_rays(part)]
         else:
             place = slice(codes.size, paths)
             found = [wave_shares(waves, k[0], step) for waves in stored_waves(part)]

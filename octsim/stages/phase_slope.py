@@ -113,8 +113,7 @@ def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[
         phase = np.where(visible[:, np.newaxis], phase, np.nan)
         fringe["fringe_status"] = "diameter", status.values[inner], status.attrs
     found = phase_slopes(diameter, part["magnitude"].values, phase)
-    n_neuron = config.scene.swept_index
-    spectra = ideal_spectra(n_neuron, diameter, k)
+    spectra = ideal_spectra(config.swept_material, diameter, k)
     ideal = fourier_components(spectra, config.processing)
     ideals = phase_slopes(diameter, np.abs(ideal), np.angle(ideal))
     slope, ideal_slope = found.strongest, ideals.strongest
@@ -139,7 +138,7 @@ def _figures(
 ) -> dict[str, Any]:
     """Return the thesis's summary figures of a sweep, over the diameters whose slope is known."""
     k = config.spectrum.wavenumbers()
-    predicted = predicted_phase_slope(config.scene.swept_index, k[0], k[-1])
+    predicted = predicted_phase_slope(config.swept_material, k[0], k[-1])
     known = np.isfinite(phase_slope)
     ideal = {
         "predicted_phase_slope": predicted,

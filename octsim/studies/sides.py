@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from octsim.optics.scene import NEURON_ON_GLASS
 from octsim.schemes.field_sum import field_at
 from octsim.schemes.fullwave.series import over_band
-from octsim.schemes.light import TERMS, Found, Light, Waves
+from octsim.schemes.light import TERMS, Found, Light, Sampled, Waves
 from octsim.tracing.light_paths import path_name
 
 GLASS = "PR"
@@ -46,7 +46,8 @@ def side_fields(light: Found, wavenumber: float) -> dict[str, NDArray[np.complex
         k = np.array([wavenumber])
         terms = dict(zip(TERMS, light.terms, strict=True))
         return {side: over_band(light, terms[f"{side}_side"], k)[:, 0] for side in SIDES}
-    return {side: np.array([path_field(light, name, wavenumber)]) for side, name in SIDES.items()}
+    rays = light.rays if isinstance(light, Sampled) else light
+    return {side: np.array([path_field(rays, name, wavenumber)]) for side, name in SIDES.items()}
 
 
 def side_slopes(

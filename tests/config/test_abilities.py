@@ -9,21 +9,37 @@ from octsim.config.abilities import as_far_as, asked_of_scheme
 from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.config.scheme import light_keys
-from octsim.schemes.table import COUNTED_RAYS, LIGHT_PATHS, SCHEMES, Ability
+from octsim.schemes.table import COUNTED_RAYS, LIGHT_PATHS, SCHEMES
 
 NEURON: dict[str, Any] = {"medium": "neuron"}
 WAVES: list[tuple[dict[str, Any], str]] = [
-    ({"objective": {"pupil": {"gaussian": 1}}}, "objective.pupil: {gaussian: 1.0} given, but {} does not weigh the pupil"),
-    ({"objective": {"pupil": {"fibre": "5 um"}}}, "objective.pupil: {fibre: 5.0 um} given, but {} does not weigh the pupil"),
-    ({"objective": {"apodisation": "aplanatic"}}, "objective.apodisation: aplanatic given, but {} has no apodisation"),
-    ({"polarisation": {"input": "unpolarised"}}, "polarisation.input: unpolarised given, but {} has light of one kind"),
-    ({"polarisation": {"input": "30 deg"}}, "polarisation.input: 30 deg given, but {} has light of one kind"),
-    ({"polarisation": {"analyser": "0.5 rad"}}, "polarisation.analyser: 28.64788976 deg given, but {} has"),
     ({"scene": {"cylinders": [{**NEURON, "x": "100 nm"}]}}, "scene.cylinders.0.x: 0.1 um given, but {} has the cylinder on the optical axis"),
     ({"scene": {"cylinders": [{**NEURON, "azimuth": "10 deg"}]}}, "scene.cylinders.0.azimuth: 10 deg given, but {} has the cylinder along y"),
 ]  # fmt: skip
+SOME: list[tuple[str, dict[str, Any], str, str]] = [
+    ("paths", {"beam": {"waist": "diffraction"}}, "beam.waist: diffraction given, but {} has rays that meet in the focus", "vogel"),
+    ("paths", {"detector": {"falloff": "fibre"}}, "detector.falloff: fibre given, but {} does not weigh by a falloff without an edge", "vogel"),
+    ("paths", {"objective": {"zernike": {7: "1 nm"}}}, "objective.zernike: {'7': 0.001 um} given, but {} needs an aberration that is even along", "vogel"),
+    ("fullwave", {"objective": {"zernike": {5: "1 nm"}}}, "objective.zernike: {'5': 0.001 um} given, but {} needs an aberration that is even along", "vogel"),
+    ("fullwave", {"detector": {"falloff": "top_hat"}}, "detector.falloff: top_hat given, but {} does not weigh by a falloff", "vogel or paths"),
+    ("fullwave", {"detector": {"falloff": "fibre"}}, "detector.falloff: fibre given, but {} does not weigh by a falloff", "vogel"),
+    ("fullwave", {"beam": {"waist": "0.1 um"}}, "beam.waist: 0.1 um given, but {} has rays that meet in the focus", "vogel"),
+    ("fullwave", {"scene": {"attenuation": {"water": "1 /cm"}}}, "scene.attenuation.water: 0.0001 /um given, but {} has no attenuation around the cylinder", "vogel or paths"),
+]  # fmt: skip
+EVERY: list[dict[str, Any]] = [
+    {"objective": {"pupil": {"gaussian": 1}}},
+    {"objective": {"pupil": {"fibre": "5 um"}}},
+    {"objective": {"apodisation": "aplanatic"}},
+    {"objective": {"zernike": {"coma x": "1 nm", "spherical": "1 nm"}}},
+    {"objective": {"zernike": {4: "1 nm"}, "zernike_rays": "phase"}},
+    {"objective": {"focal_shift": {"reference": "755 nm", "linear": "0.4 um/um"}}},
+    {"polarisation": {"input": "unpolarised"}},
+    {"polarisation": {"input": "30 deg", "analyser": "0.5 rad"}},
+    {"scene": {"refractive_index": {"water": "water", "neuron": {"cauchy": [1.38, 0.004]}}}},
+    {"scene": {"attenuation": {"neuron": "100 /cm"}}},
+    {"interferometer": {"reference": {"amplitude": 0.004, "length": "9 um"}}},
+]
 NOBODY: list[tuple[dict[str, Any], str]] = [
-    ({"attenuation": {"neuron": "100 /cm"}}, "scene.attenuation.neuron: 0.01 /um given, but {} has no attenuation"),
     ({"layers": ["glass", {"medium": "water", "thickness": "9 um"}, "glass"]}, "scene.layers: [glass, water, glass] given, but {} has two layers"),
     ({"layers": ["glass", "glass"]}, "scene.layers: [glass, glass] given, but {} has two layers"),
     ({"layers": ["glass", {"medium": "neuron", "thickness": "swept"}, "water"], "cylinders": []}, "scene.cylinders: [] given, but {} needs a cylinder"),
@@ -51,6 +67,24 @@ def test_what_waves_alone_can_do_is_refused_by_rays(
     load_config({"tracing": {"scheme": "fullwave"}}, overlay)
 
 
+@pytest.mark.parametrize(("scheme", "overlay", "line", "able"), SOME)
+def test_what_some_schemes_can_do_is_refused_by_the_others(
+    scheme: str, overlay: dict[str, Any], line: str, able: str
+) -> None:
+    (said,) = refused(scheme, overlay)
+    assert said.startswith(line.replace("{} ", f"tracing.scheme: {scheme} "))
+    assert said.endswith(f"; give tracing.scheme: {able}, or leave it out")
+
+
+@pytest.mark.parametrize("overlay", EVERY, ids=str)
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_what_every_scheme_can_do_is_refused_by_none(scheme: str, overlay: dict[str, Any]) -> None:
+    config = load_config({"tracing": {"scheme": scheme}}, overlay)
+    asked = {one.ability for one in asked_of_scheme(config)}
+    assert asked
+    assert asked <= SCHEMES[scheme].honours
+
+
 @pytest.mark.parametrize(("scene", "line"), NOBODY, ids=[line[:40] for _, line in NOBODY])
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_what_no_scheme_can_do_is_refused_by_all(
@@ -75,18 +109,19 @@ def test_no_apodisation_is_said_to_be_read_as_not_given_by_an_aplanatic_scheme()
 
 
 def test_a_config_of_waves_is_one_of_rays_as_far_as_those_can() -> None:
-    config = load_config(
-        {"tracing": {"scheme": "fullwave"}}, *(overlay for overlay, _ in WAVES[1:7])
-    )
-    assert config != load_config({"tracing": {"scheme": "fullwave"}})
+    waves = {"tracing": {"scheme": "fullwave"}}
+    config = load_config(waves, WAVES[1][0], EVERY[0])
     for scheme in (COUNTED_RAYS, LIGHT_PATHS):
-        plain = as_far_as(scheme, config)
-        assert plain == load_config({"tracing": {"scheme": "fullwave"}})
+        assert as_far_as(scheme, config) == load_config(waves, EVERY[0])
     assert as_far_as(SCHEMES["fullwave"], config) == config
 
 
-def test_a_spectrum_depends_on_polarisation_where_a_scheme_has_it_and_no_light_does() -> None:
+def test_waves_are_found_for_all_polarisations_and_rays_for_the_one_that_is_asked_for() -> None:
     for name, scheme in SCHEMES.items():
-        assert "polarisation" not in light_keys(load_config({"tracing": {"scheme": name}}))
-        assert ("polarisation" in scheme.summing_keys) == (Ability.POLARISATION in scheme.honours)
+        plain = load_config({"tracing": {"scheme": name}})
+        polarised = load_config(plain.to_dict(), {"polarisation": {"input": "left"}})
+        waves = scheme.light == "waves"
+        assert "polarisation" not in light_keys(plain)
+        assert ("polarisation" in light_keys(polarised)) != waves
+        assert ("polarisation" in scheme.summing_keys) == waves
     assert {"scene", "objective"} < set(light_keys(Config()))

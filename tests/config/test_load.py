@@ -272,6 +272,8 @@ def test_the_default_config_file_is_the_defaults_and_names_every_key() -> None:
     optional = {"sweep.focus.slope", "sweep.focus.intercept", "tracing.preset"}
     optional |= {f"archive.creators.{name}" for name in ("name", "orcid", "affiliation")}
     optional |= {"objective.pupil.gaussian", "objective.pupil.fibre"}
+    optional |= {f"objective.focal_shift.{name}" for name in ("reference", "linear", "quadratic")}
+    optional |= {f"interferometer.reference.{name}" for name in ("amplitude", "length")}
     optional |= {
         key
         for key in known_keys()

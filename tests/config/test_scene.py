@@ -43,12 +43,13 @@ def impossible(given: dict[str, Any]) -> list[str]:
 
 
 def test_the_thesis_is_a_neuron_in_water_on_glass() -> None:
-    thesis = load_config().scene
+    config = load_config()
+    thesis = config.scene
     assert thesis.media == {
         "scene.layers.0": "glass", "scene.layers.1": "water", "scene.cylinders.0.medium": "neuron",
     }  # fmt: skip
     assert (thesis.swept, thesis.swept_gap_key) == (("scene.cylinders.0",), "scene.gap")
-    indices = thesis.objective_index, thesis.host_index, thesis.swept_index
+    indices = config.objective_index, config.host_index, config.swept_index
     assert (*indices, thesis.swept_gap, thesis.floor) == (1.52, 1.33, 1.39, 0.005, 0.0)
 
 
@@ -56,11 +57,13 @@ def test_a_record_without_the_keys_is_the_same_config() -> None:
     old = Config().to_dict()
     for section, keys in (
         ("scene", ("layers", "cylinders", "attenuation")),
-        ("objective", ("pupil", "apodisation")),
+        ("objective", ("pupil", "apodisation", "zernike", "zernike_rays", "focal_shift")),
+        ("detector", ("falloff", "mode_field_diameter", "fibre_na")),
     ):
         for key in keys:
             del old[section][key]
-    del old["polarisation"]
+    for section in ("polarisation", "beam", "interferometer"):
+        del old[section]
     assert load_config(old) == Config()
 
 
@@ -241,7 +244,7 @@ def test_a_grid_over_a_place_that_a_list_lacks_is_refused() -> None:
 
 def test_media_of_other_names_are_as_good(recwarn: pytest.WarningsRecorder) -> None:
     named = {"refractive_index": {"axon": 1.39}, "cylinders": [{"medium": "axon"}]}
-    assert load_config({"scene": named}).scene.swept_index == 1.39
+    assert load_config({"scene": named}).swept_index == 1.39
     assert not recwarn.list
     warnings.simplefilter("error")
-    assert load_config({"scene": {"attenuation": {"neuron": "0 /cm"}}}).scene.swept_index == 1.39
+    assert load_config({"scene": {"attenuation": {"neuron": "0 /cm"}}}).swept_index == 1.39

@@ -118,6 +118,24 @@ def test_an_inverse_length_is_known_by_each_way_to_write_it(unit: str) -> None:
     assert find_unit("1/s") is None
 
 
+@pytest.mark.parametrize(
+    ("name", "dimension", "size"),
+    [
+        ("um/um", "ratio", "1"),
+        ("nm/um", "ratio", "0.001"),
+        ("um / nm", "ratio", "1000"),
+        ("um/um^2", "inverse length", "1"),
+        ("nm/um**2", "inverse length", "0.001"),
+        ("nm/nm²", "inverse length", "1000"),
+        ("um/mm2", "inverse length", "0.000001"),
+    ],
+)
+def test_a_length_over_a_length_is_a_unit(name: str, dimension: str, size: str) -> None:
+    assert find_unit(name) == Unit(dimension, Decimal(size))
+    for other in ("um/s", "s/um", "um/", "um/um^3", "um/um/um", "furlong/um"):
+        assert find_unit(other) is None
+
+
 OTHERS = "s ms us µs Hz kHz MHz GHz rad mrad deg kg g K V W J eV N Pa A % 1/um 1/cm um-1"
 
 

@@ -11,7 +11,7 @@ import octsim
 from octsim.base.errors import OctsimError
 from octsim.optics.scene import NEURON_ON_GLASS
 from octsim.schemes.light import AccuracyStatus
-from octsim.stages.detections import stored_light
+from octsim.stages.detections import stored_rays
 from octsim.stages.phase_slope import summary
 from octsim.stages.spectra import doubts
 from octsim.tracing.light_paths import path_name
@@ -23,7 +23,7 @@ def test_rays_are_the_literal_ones_of_each_diameter(stages: dict[str, xr.Dataset
     detected, law = stages["detections"], stages["focus_law"]
     foci = float(law["slope"]) * detected["diameter"] + float(law["intercept"])
     assert np.allclose(detected["focus"], foci, rtol=1e-12)
-    lights = stored_light(detected)
+    lights = stored_rays(detected)
     for row in (0, 4, 8):
         at, light = detected.isel(diameter=row), lights[row]
         traced = literal(CONFIG, float(at["diameter"]), float(at["focus"]))
@@ -49,7 +49,7 @@ def test_detections_are_contiguous_ragged(stages: dict[str, xr.Dataset]) -> None
 def test_rays_of_a_diameter_are_read_back_from_its_place(stages: dict[str, xr.Dataset]) -> None:
     detected, start = stages["detections"], 0
     for light, count in zip(
-        stored_light(detected), detected["rays_detected"].values.tolist(), strict=True
+        stored_rays(detected), detected["rays_detected"].values.tolist(), strict=True
     ):
         own = detected.isel(ray=slice(start, start + count))
         assert np.array_equal(light.path, own["path_code"])

@@ -17,7 +17,7 @@ from octsim.phase.estimators.estimate import middle
 from octsim.phase.estimators.likelihood import Model, maximum_likelihood
 from octsim.phase.modelled_spectra import model_of_sweep, modelled
 from octsim.phase.slopes import slope_of
-from octsim.stages.detections import stored_light
+from octsim.stages.detections import stored_rays
 from octsim.studies.estimators.contenders import COMMON, CONTENDERS, Band, contenders, sweep_slopes
 from octsim.studies.estimators.path_phase import path_slopes
 from octsim.studies.estimators.resolution import resolution, surroundings_of
@@ -34,7 +34,7 @@ def processing(**given: object) -> Processing:
 
 def test_slopes_of_a_sweep_are_those_of_the_light_s_own_phase(spectra: xr.Dataset) -> None:
     diameter = spectra["diameter"].values
-    true, _ = path_slopes(stored_light(octsim.detections(SWEEP)), diameter, middle(K))
+    true, _ = path_slopes(stored_rays(octsim.detections(SWEEP)), diameter, middle(K))
     intensity = spectra["intensity"].values
     for asked in (
         processing(estimator="sinusoid", sinusoid={"depth": "fitted"}),

@@ -99,7 +99,7 @@ def test_one_quantity_is_varied_at_a_time_and_rays_keep_the_thesis_s_pupil() -> 
         moved = {
             "pupil": case.exact.objective.pupil != base.objective.pupil,
             "NA": case.exact.objective.numerical_aperture != base.objective.numerical_aperture,
-            "index": case.exact.scene.swept_index != base.scene.swept_index,
+            "index": case.exact.swept_index != base.swept_index,
             "gap": case.exact.scene.swept_gap != base.scene.swept_gap,
         }
         assert not any(is_moved for name, is_moved in moved.items() if name != case.quantity)

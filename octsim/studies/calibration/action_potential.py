@@ -90,7 +90,7 @@ def action_potential(
     change = change_from_rest(Series(time, phase), REST)
     found = expansion(change.phase, settings.diameter, calibration, change.error)
     fft_change = change_from_rest(Series(time, of_fft), REST)
-    predicted = predicted_phase_slope(config.scene.swept_index, k[0], k[-1])
+    predicted = predicted_phase_slope(config.swept_material, k[0], k[-1])
     return make(
         "action_potential",
         config,

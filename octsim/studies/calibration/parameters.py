@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from octsim.config.derive import nested, part_of
+from octsim.config.dispersion import moved
 from octsim.config.grid import value_at
 from octsim.config.light import FibreMode, GaussianFill
 from octsim.config.models import Config
@@ -53,10 +54,19 @@ def _keyed(step: float, key_of: Callable[[Config], str], **others: Any) -> Param
 
 
 def _index(medium_of: Callable[[Config], str], **others: Any) -> Parameter:
-    def key_of(config: Config) -> str:
-        return f"scene.refractive_index.{medium_of(config)}"
+    def believed(config: Config) -> float:
+        material = config.scene.refractive_index.of[medium_of(config)]
+        return material.index(config.spectrum.middle).real
 
-    return _keyed(1e-3, key_of, **{"limits": lambda _: (1.0, 10.0), "unit": "1"} | others)
+    def overlay(config: Config, value: float) -> Overlay:
+        medium = medium_of(config)
+        given = dict(config.scene.refractive_index)[medium]
+        # as dispersive as it is believed to be
+        index = moved(given, value, config.spectrum.middle)
+        return nested(f"scene.refractive_index.{medium}", index)
+
+    given: dict[str, Any] = {"limits": lambda _: (1.0, 10.0), "unit": "1"} | others
+    return Parameter(1e-3, believed, overlay, **given)
 
 
 def _above_aperture(index: float, aperture: float) -> tuple[float, float]:
@@ -65,18 +75,18 @@ def _above_aperture(index: float, aperture: float) -> tuple[float, float]:
 
 
 def _glass_limits(config: Config) -> tuple[float, float]:
-    return _above_aperture(config.scene.objective_index, config.objective.numerical_aperture)
+    return _above_aperture(config.objective_index, config.objective.numerical_aperture)
 
 
 def _water_limits(config: Config) -> tuple[float, float]:
     if not _of_waves(config):
         return 1.0, 10.0
-    return _above_aperture(config.scene.host_index, config.objective.numerical_aperture)
+    return _above_aperture(config.host_index, config.objective.numerical_aperture)
 
 
 def _aperture_limits(config: Config) -> tuple[float, float]:
-    scene, aperture = config.scene, config.objective.numerical_aperture
-    above = [scene.objective_index, *([scene.host_index] if _of_waves(config) else [])]
+    aperture = config.objective.numerical_aperture
+    above = [config.objective_index, *([config.host_index] if _of_waves(config) else [])]
     return _LEAST_NA, aperture + 0.49 * (min(above) - aperture)
 
 

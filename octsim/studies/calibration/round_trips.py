@@ -60,7 +60,7 @@ def _recover(
     spectra = pair[[0] * REST + [1]]
     if generator is not None:
         spectra = shot_noise(spectra, config.action_potential.photons, generator)
-    depth = config.scene.swept_index * diameter
+    depth = config.swept_group_index * diameter
     phase = series_phases(spectra, config.spectrum.wavenumbers(), depth, calibrating(config))
     series = Series(np.arange(REST + 1.0), phase)
     change = change_from_rest(series, REST)

@@ -186,5 +186,5 @@ def _variables(
         "slope_shift": ("diameter", shift.sum(axis=1)),
         "budget": (("diameter", "parameter"), budget),
         "budget_error": (("diameter", "parameter"), budget_error),
-        "predicted_phase_slope": predicted_phase_slope(config.scene.swept_index, k[0], k[-1]),
+        "predicted_phase_slope": predicted_phase_slope(config.swept_material, k[0], k[-1]),
     }  # fmt: skip

@@ -12,7 +12,7 @@ from octsim.config.models import Config
 from octsim.datasets.files import make
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
-from octsim.optics.two_beams import aliasing_step, predicted_phase_slope
+from octsim.optics.two_beams import aliasing_step, indices, predicted_phase_slope
 from octsim.phase.slopes import trend
 from octsim.stages.focus_law import focus_line, sweep_foci
 from octsim.studies.causes.beat import Parts
@@ -87,9 +87,9 @@ def causes(
     run, converged = (Instrument(one, points) for one in (config, by_accuracy(config, _ACCURACY)))
     diameter = config.sweep.diameters.values()
     spectra = MovedSpectra(run, converged, line, diameter, threads)
-    k, n_neuron = run.wavenumber, config.scene.swept_index
-    steps = _steps(diameter, aliasing_step(n_neuron, k[0], k[-1]))
-    reading = Reading(config.processing, n_neuron, diameter, k)
+    k, neuron = run.wavenumber, config.swept_material
+    steps = _steps(diameter, aliasing_step(neuron, k[0], k[-1]))
+    reading = Reading(config.processing, indices(neuron, k), diameter, k)
     values = every_slope(spectra.chosen, reading)
     prepared = signal(spectra.chosen(ALL).at, ALL, config.processing)
     smooth = trend(diameter, values[NONE])
@@ -104,7 +104,7 @@ def causes(
             "phase_slope": ("diameter", values[ALL]),
             "component": ("diameter", strongest(prepared)),
             "focus": ("diameter", foci),
-            "predicted_phase_slope": predicted_phase_slope(n_neuron, k[0], k[-1]),
+            "predicted_phase_slope": predicted_phase_slope(neuron, k[0], k[-1]),
             **_shares(values, smooth),
             **_ideal(reading),
             **_beats(spectra, reading, foci),

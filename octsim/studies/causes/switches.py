@@ -38,7 +38,8 @@ class Reading(NamedTuple):
     """How spectra are read, whatever is switched off."""
 
     processing: Processing
-    n_neuron: float
+    n_neuron: float | Array
+    """Index of the neuron, the same at all wavenumbers, or of each, (K,)."""
     diameter: Array
     """Of each spectrum, (D,), µm."""
     wavenumber: Array
@@ -113,9 +114,10 @@ def _components(
         transformed = [np.fft.fft(s)[:, : s.shape[1] // 2 + 1] for s in spectra]
         row, component = np.arange(reading.diameter.size), strongest(spectra[1])
         return [t[row, component] for t in transformed]
-    k = reading.wavenumber
+    k, n = reading.wavenumber, reading.n_neuron
     # the same reference for all three: it does not move with the diameter
-    reference = np.exp(-2j * reading.n_neuron * np.outer(reading.diameter, k - k[0]))
+    n, over = (1.0, n * k - n[0] * k[0]) if isinstance(n, np.ndarray) else (n, k - k[0])
+    reference = np.exp(-2j * n * np.outer(reading.diameter, over))
     return [(s * reference).sum(axis=1) for s in spectra]
 
 

@@ -50,7 +50,7 @@ def apertures_of(config: Config) -> list[float]:
     OctsimError
         If one is not below the water's index with its tolerance, as the scheme needs it.
     """
-    own, water = config.objective.numerical_aperture, config.scene.host_index
+    own, water = config.objective.numerical_aperture, config.host_index
     tolerances = config.calibration.tolerances
     most = water - tolerances.water - tolerances.numerical_aperture
     keys = {"objective.numerical_aperture": [own], "design.apertures": config.design.apertures}

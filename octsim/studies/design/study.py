@@ -14,7 +14,14 @@ from octsim.schemes.light import AccuracyStatus
 from octsim.stages.focus_law import focus_line
 from octsim.studies.design.cell import bench_of, cell
 from octsim.studies.design.criteria import CRITERIA, peaks
-from octsim.studies.design.settings import ACCURACY, PARAMETERS, Band, apertures_of, bands_of
+from octsim.studies.design.settings import (
+    ACCURACY,
+    PARAMETERS,
+    Band,
+    apertures_of,
+    bands_of,
+    waves,
+)
 from octsim.studies.design.uncertainty import DRAWS, ESTIMATORS, SEED, Known, Neuron, known
 
 _PLACES = ("aperture", "diameter", "focus_offset", "fill", "band")
@@ -146,11 +153,12 @@ def doubts(table: xr.Dataset) -> Iterator[str]:
 def _column(config: Config, bands: list[Band], at: Column, foci: list[float]) -> Iterator[Found]:
     """Return what each focus, fill and band gives, in this order."""
     bench, settings = bench_of(config, at.aperture), config.design
-    index, tolerance = config.scene.swept_index, config.calibration.tolerances.diameter
+    solved, tolerance = waves(config, at.aperture), config.calibration.tolerances.diameter
+    index, material = solved.swept_group_index, solved.swept_material
     for focus in foci:
         for of_fill in cell(config, bench, bands, at.diameter, focus):
             for band, seen in zip(bands, of_fill, strict=True):
-                neuron = Neuron(at.diameter, index, band.wavenumber, seen.around)
+                neuron = Neuron(at.diameter, index, band.wavenumber, seen.around, material)
                 seed = SEED, at.number
                 yield Found(
                     known(seen, neuron, settings.photons, tolerance, seed), seen.error, seen.status

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from octsim.config.processing import Processing
+from octsim.optics.materials import Material
 from octsim.optics.two_beams import predicted_phase_slope
 from octsim.phase.cramer_rao import diameter_bound
 from octsim.phase.derivatives import Array, derivative, wrapped
@@ -33,11 +34,13 @@ class Neuron(NamedTuple):
     diameter: float
     """At rest, µm."""
     n_neuron: float
-    """Its refractive index."""
+    """Its group index, of optical depths."""
     wavenumber: Array
     """(K,), 1/µm."""
     around: Array
     """Modelled spectra at `OFFSETS` of the diameter, (5, K)."""
+    material: Material | None = None
+    """What it is of; None is of an index that is the same at all wavenumbers."""
 
 
 Estimator = Callable[[Neuron, Array, Array], Array]
@@ -64,7 +67,7 @@ def _likeliest(neuron: Neuron, spectra: Array, _: Array) -> Array:
     """Return the likeliest diameters, as phases of the prediction."""
     k = neuron.wavenumber
     found = maximum_likelihood(spectra, Model(neuron.diameter + OFFSETS, neuron.around))
-    return predicted_phase_slope(neuron.n_neuron, k[0], k[-1]) * found
+    return predicted_phase_slope(neuron.material or neuron.n_neuron, k[0], k[-1]) * found
 
 
 ESTIMATORS: Mapping[str, Estimator] = {

@@ -7,6 +7,7 @@ import numpy as np
 
 from octsim.config.models import Config
 from octsim.config.processing import Processing
+from octsim.optics.materials import Material
 from octsim.optics.two_beams import predicted_phase_slope
 from octsim.phase.estimators import phases
 from octsim.phase.estimators.estimate import Array
@@ -45,14 +46,17 @@ class Band(NamedTuple):
     """What estimators need to know of a scene's spectra."""
 
     n_neuron: float
-    """Refractive index of the neuron."""
+    """Group index of the neuron, of optical depths."""
     wavenumber: Array
     """Wavenumbers, (K,), 1/µm."""
+    material: Material | None = None
+    """What the neuron is of; None is of an index that is the same at all wavenumbers."""
 
     @property
     def predicted(self) -> float:
         """Predicted phase slope, mrad/nm."""
-        return predicted_phase_slope(self.n_neuron, self.wavenumber[0], self.wavenumber[-1])
+        neuron = self.material or self.n_neuron
+        return predicted_phase_slope(neuron, self.wavenumber[0], self.wavenumber[-1])
 
 
 def contenders(config: Config) -> dict[str, Processing]:

@@ -92,7 +92,7 @@ def estimators(
     by_paths = Instrument(by_accuracy(config, MODEL_ACCURACY), points)
     counted = Instrument(by_rays(config, config.tracing.rays), points)
     compared = contenders(config)
-    band = Band(config.scene.swept_index, by_paths.wavenumber)
+    band = Band(config.swept_group_index, by_paths.wavenumber, config.swept_material)
     scenes = other_scenes(config, foci, threads, points)
     require_fringe("estimators", scenes[0].intensity, band.wavenumber, band.n_neuron * diameter)
     model = model_of_sweep(config, foci, threads, points)

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from octsim.config.derive import changed, nested
+from octsim.config.dispersion import moved
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.config.units import format_length
@@ -42,7 +43,8 @@ def other_scenes(
 ) -> list[OtherScene]:
     """Return the spectra of a sweep (foci (D,) in µm) of the model's own scene and of others."""
     scene = config.scene
-    gap, index = scene.swept_gap + GAP, scene.swept_index + INDEX
+    gap, of = scene.swept_gap + GAP, dict(scene.refractive_index)
+    index = moved(of[scene.swept_medium], config.swept_index + INDEX, config.spectrum.middle)
     changes: Mapping[str, tuple[Mapping[str, Any], float]] = {
         "own": ({}, 0.0),
         f"gap {1000 * GAP:+g} nm": (nested(scene.swept_gap_key, format_length(gap)), 0.0),

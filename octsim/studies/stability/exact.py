@@ -76,7 +76,7 @@ def inputs_of(config: Config, diameter: float, focus: float, x: float, y: float)
     """Return the doubles of a config, of a point and of a ray's position as exact numbers."""
     scene, objective = config.scene, config.objective
     given = (
-        scene.objective_index, scene.host_index, scene.swept_index, scene.swept_gap, diameter,
+        config.objective_index, config.host_index, config.swept_index, scene.swept_gap, diameter,
         focus, objective.focus_distance, objective.numerical_aperture, objective.magnification,
         config.detector.core_diameter, x, y,
     )  # fmt: skip

@@ -181,12 +181,13 @@ def _factors(glass: float, water: float) -> Iterator[tuple[str, str, Overlay, di
 
 def cells(base: Config) -> list[Cell]:
     """Return all cells of the matrix, from a base config."""
-    index = base.scene.refractive_index
+    of, k = base.scene.refractive_index.of, base.spectrum.middle
+    glass, water = (of[name].index(k).real for name in ("glass", "water"))
     listed = []
     for corner, (overlay, diameter, focus) in CORNERS.items():
         start = {"diameter": diameter, "focus": focus}
         listed.append(Cell(corner, "none", "", (overlay,), diameter, focus))
-        for factor, value, more, fields in _factors(index.glass, index.water):
+        for factor, value, more, fields in _factors(glass, water):
             listed.append(Cell(corner, factor, value, (overlay, more), **(start | fields)))
     many = {"tracing": {"rays": 1_000_000}}
     listed.append(Cell("default", "rays", "1e6", (many,)))

@@ -74,7 +74,7 @@ def _varied(config: Config) -> Iterator[tuple[str, str, dict[str, Any]]]:
         yield "NA", f"{aperture:g}", nested("objective.numerical_aperture", aperture)
     medium = scene.swept_medium
     for contrast in _CONTRASTS:
-        index = round(scene.host_index + contrast, 6)
+        index = round(config.host_index + contrast, 6)
         yield "index", f"{index:g}", nested(f"scene.refractive_index.{medium}", index)
     for gap in _GAPS:
         yield "gap", f"{gap} nm", nested(scene.swept_gap_key, f"{gap} nm")

@@ -58,7 +58,7 @@ def by_estimator(processing: Processing, estimator: str) -> Processing:
 def seen(instrument: Instrument, window: Window) -> Seen:
     """Return what an instrument sees in a window of diameters."""
     k, processing = instrument.wavenumber, instrument.config.processing
-    index = instrument.config.scene.swept_index
+    index = instrument.config.swept_group_index
     points = {
         (diameter, focus): instrument.spectrum(diameter, focus)
         # the foci of a diameter one after the other: they share what is kept of it
