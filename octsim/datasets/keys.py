@@ -9,7 +9,10 @@ from octsim.config.scheme import light_keys, scheme_of
 from octsim.datasets.catalog import CATALOG, STAGES, jobs
 from octsim.datasets.stage import LIGHT, RAYS, SUMMING, Stage
 
-_DECIDING = ("tracing.scheme", "tracing.preset", "sweep.focus")
+_DECIDING = (
+    "tracing.scheme", "tracing.preset", "sweep.focus", "scene.refractive_index", "polarisation",
+    "beam", "detector.falloff", "objective.pupil", "objective.focal_shift",
+)  # fmt: skip
 """Keys that decide which others are read."""
 
 

@@ -24,7 +24,10 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "exact_status": ("1", "whether it is compared with Maxwell's equations, or why not"),
     "field_amplitude": ("1", "magnitude of the field at the middle of the band"),
     "field_error": ("1", "estimated error of the field, largest over band and polarisations"),
+    "field": ("1", "detected field; the intensity is the mean of theirs"),
+    "field_imaginary": ("1", "imaginary part of a detected field"),
     "field_phase": ("rad", "phase of the field at the middle of the band, in (-pi, pi]"),
+    "field_real": ("1", "real part of a detected field"),
     "focus": ("um", "height of the focus above the glass"),
     "fringe_status": ("1", "whether the spectrum has a fringe of the diameter, or why not"),
     "fringe_visibility": (

@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 from octsim.base.errors import OctsimError
 from octsim.base.provenance import source_digest
 from octsim.base.threads import each
-from octsim.config.derive import parts_of
 from octsim.config.models import Config
-from octsim.config.scheme import light_keys, options_of, scheme_of
+from octsim.config.scheme import options_of, scheme_of, traced_keys
 from octsim.instrument.build import optics_of, scene_of
 from octsim.instrument.point_keys import instrument_key
 from octsim.instrument.points import Points
 from octsim.schemes.field_sum import spectrum_of
-from octsim.schemes.light import AccuracyStatus, Found, Light, LightAt, Optics
+from octsim.schemes.light import AccuracyStatus, Found, Light, LightAt, Optics, Sampled, attenuated
 from octsim.schemes.table import LIGHT_PATHS
 
 
@@ -64,12 +63,16 @@ class Instrument:
         self._options = options_of(config)
 
     def nominal_depth(self, diameter: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the optical depth n_neuron · d of neurons' far sides, µm, for diameters, µm."""
-        return self.config.scene.swept_index * diameter
+        """Return the optical depth n d of neurons' far sides by the group index, all in µm."""
+        return self.config.swept_group_index * diameter
 
     def light(self, diameter: float, focus: float) -> Found:
         """Return the detected light of a diameter at a focus, both µm."""
-        return self._light_at(diameter, focus)
+        light = self._light_at(diameter, focus)
+        if isinstance(light, Light) and light.lengths is not None:
+            middle = sum(self._optics.band) / 2
+            return attenuated(light, scene_of(self.config, diameter), middle)
+        return light
 
     def rays(self, diameter: float, focus: float) -> Light:
         """Return the detected rays of a diameter at a focus, both µm.
@@ -82,6 +85,8 @@ class Instrument:
         light = self.light(diameter, focus)
         if isinstance(light, Light):
             return light
+        if isinstance(light, Sampled):
+            return light.rays
         raise OctsimError(
             f"tracing.scheme: {self.scheme.name} given, whose light is no rays, which are needed "
             f"here; give tracing.scheme: {LIGHT_PATHS.name}"
@@ -132,8 +137,7 @@ class Instrument:
         return self._points.keeping(self._find, self._key, self.scheme.rate_name(self._options))
 
     def _key(self) -> bytes:
-        read = parts_of(self.config.to_dict(), *light_keys(self.config))
         code = source_digest(
             self.scheme.module, "octsim.instrument.build", "octsim.instrument.point_entries"
         )
-        return instrument_key(read, code)
+        return instrument_key(traced_keys(self.config), code)

@@ -1,15 +1,18 @@
 """The light of one point, as rays whose fields add up or as a field, and how sure it is."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.optics.beam import aperture_radius
 from octsim.optics.detector import Detector
+from octsim.optics.effects import NO_EFFECTS, Effects
 from octsim.optics.polarisation import Polarisation
-from octsim.optics.pupil import Pupil
+from octsim.optics.pupil import Pupil, UniformPupil
 from octsim.optics.scene import Scene
 
 
@@ -66,6 +69,45 @@ class Light(NamedTuple):
     status: AccuracyStatus
     outcomes: NDArray[np.int64] | None = None
     """How often each `octsim.optics.detector.Outcome` came about, (7,), where rays are counted."""
+    lengths: NDArray[np.float64] | None = None
+    """Lengths of each ray's way in the scene's regions, (R, D), µm, where one attenuates: what that
+    takes is not taken from the amplitudes yet."""
+
+
+class Sampled(NamedTuple):
+    """Rays that differ from wavenumber to wavenumber, or in polarisation, and their field."""
+
+    rays: Light
+    """Those at the middle of the band; of polarised light with the magnitudes of their fields."""
+    wavenumber: NDArray[np.float64]
+    """Samples of the band, (K,), 1/µm."""
+    values: NDArray[np.complex128]
+    """Complex fields whose intensities have the detected one as their mean, (C, K)."""
+    error: float
+    """Estimate of the error of the field, as a magnitude; the largest over the band."""
+
+    def field_at(self, wavenumber: NDArray[np.float64]) -> "Field":
+        """Return the field at some of the samples.
+
+        Raises
+        ------
+        ValueError
+            If another wavenumber is asked for.
+        """
+        place = np.searchsorted(self.wavenumber, wavenumber).clip(max=self.wavenumber.size - 1)
+        if not np.array_equal(self.wavenumber[place], wavenumber):
+            raise ValueError("the field is known at the samples of its spectrum, and nowhere else")
+        return Field(self.values[:, place], self.error)
+
+    @property
+    def status(self) -> AccuracyStatus:
+        """Whether the accuracy that was asked for is reached."""
+        return self.rays.status
+
+    @property
+    def segments(self) -> int:
+        """Straight pieces of ray that were traced."""
+        return self.rays.segments
 
 
 class Waves(NamedTuple):
@@ -98,6 +140,22 @@ class Waves(NamedTuple):
         return 0
 
 
+def attenuated(light: Light, scene: Scene, wavenumber: float) -> Light:
+    r"""Return light without what the regions of its scene take of it, at a wavenumber, 1/µm.
+
+    .. math:: E \to E\, e^{-\frac12 \sum_r \mu_r L_r}
+
+    (Beer and Lambert, of intensity), with the lengths of the way in each region.
+    """
+    if light.lengths is None:
+        return light
+    taken = np.array([region.attenuation_at(wavenumber) for region in scene.regions])
+    left = np.exp(-0.5 * (taken @ light.lengths))
+    return light._replace(
+        amplitude=light.amplitude * left, rough_amplitude=light.rough_amplitude * left, lengths=None
+    )
+
+
 TERMS = ("plane", "near_side", "far_side")
 """Parts of a `Waves` field: reflection off the plane, and off the cylinder's near side and far side
 (the Debye series' p = 0 and p = 2)."""
@@ -128,11 +186,54 @@ class Optics(NamedTuple):
     """What weighs the light over it."""
     polarisation: Polarisation
     """What goes in, and what is detected of it."""
+    wavenumber: NDArray[np.float64]
+    """Samples of the band, (K,), 1/µm."""
+    effects: Effects = NO_EFFECTS
+    """What else it does to rays."""
+    dispersive: bool = False
+    """Whether an index depends on the wavenumber."""
+
+    def detector_at(self, scene: Scene, wavenumber: float) -> Detector:
+        """Return the receiver at a wavenumber, 1/µm: its angle follows the objective's index."""
+        index = scene.objective.material.index(wavenumber).real
+        radius = aperture_radius(self.numerical_aperture, index, self.detector.focus_distance)
+        return self.detector._replace(objective_radius=radius)
+
+    def focus_at(self, focus: float, wavenumber: float) -> float:
+        """Return the height of the focus at a wavenumber (1/µm) for that at the reference, µm."""
+        shift = self.effects.focal_shift
+        return focus + shift.at(wavenumber) if shift else focus
+
+    @property
+    def way_varies(self) -> bool:
+        """Whether a ray's way depends on the wavenumber."""
+        return self.dispersive or self.effects.way_varies
+
+    @property
+    def varies(self) -> bool:
+        """Whether a ray's way or weight depends on the wavenumber."""
+        return self.way_varies or self.pupil.varies or self.effects.falloff.dispersive
+
+    @property
+    def scene_varies(self) -> bool:
+        """Whether what light is sent through depends on the wavenumber: an index, or the focus."""
+        return self.dispersive or self.effects.focal_shift is not None
+
+    @property
+    def sampled(self) -> bool:
+        """Whether the light of rays is a field at samples, and no rays that serve all of them."""
+        return self.varies or self.effects.vectorial
+
+    @property
+    def plain(self) -> bool:
+        """Whether rays are the thesis's, with nothing added."""
+        own = replace(self.effects, reference=None)  # is added to the sum of any rays
+        return not self.dispersive and own == NO_EFFECTS and self.pupil == UniformPupil()
 
 
 Options = Mapping[str, Any]
 """Values of a scheme's own keys of the config's section ``tracing``, by their names there."""
-Found = Light | Waves
+Found = Light | Sampled | Waves
 """The light of a point, in the form that its scheme has it."""
 LightAt = Callable[[Scene, float], Found]
 """Returns the detected light of a scene, for a height of the focus, µm."""

@@ -35,13 +35,23 @@ class Ability(Enum):
     APLANATIC = "has no apodisation"
     POLARISATION = "has light of one kind, the thesis's unpolarised one"
     ATTENUATION = "has no attenuation"
+    ATTENUATION_AROUND = "has no attenuation around the cylinder"
     LAYERS = "has two layers, of two media"
     NO_CYLINDER = "needs a cylinder"
+    PLATES = "has no plates without a cylinder"
     CYLINDERS = "has one cylinder"
     OFF_AXIS = "has the cylinder on the optical axis"
     AZIMUTH = "has the cylinder along y"
     ELEVATION = "has the cylinder level"
     SHELLS = "has a cylinder without shells"
+    DISPERSION = "has constant indices"
+    ZERNIKE = "has no aberrations"
+    ODD_ALONG = "needs an aberration that is even along the cylinder"
+    FOCAL_SHIFT = "has one focus for all wavelengths"
+    FALLOFF = "does not weigh by a falloff"
+    FIBRE_FALLOFF = "does not weigh by a falloff without an edge that depends on the wavenumber"
+    WAIST = "has rays that meet in the focus"
+    REFERENCE = "has no reference arm"
 
 
 @dataclass(frozen=True)
@@ -74,7 +84,7 @@ class Scheme:
     """Options that a name stands for."""
 
     instrument: tuple[str, ...] = (
-        "scene", "objective", "detector", "tracing.max_intersections",
+        "scene", "objective", "beam", "detector", "tracing.max_intersections",
     )  # fmt: skip
     """Dotted keys of the instrument that its light depends on."""
 
@@ -90,7 +100,8 @@ class Scheme:
     def summing_keys(self) -> tuple[str, ...]:
         """Dotted keys, besides the spectrum's, that its field over the wavenumbers depends on."""
         accuracy = ("tracing.accuracy",) if self.controls_error else ()
-        return (*accuracy, "polarisation") if Ability.POLARISATION in self.honours else accuracy
+        # rays of polarised light are found as such; waves are found for all of it
+        return (*accuracy, "interferometer", *(("polarisation",) if self.light == "waves" else ()))
 
     def chosen(self, tracing: object) -> Options:
         """Return the values that a section ``tracing`` has for the scheme's options."""
@@ -117,6 +128,15 @@ class Scheme:
         return import_module(self.module)
 
 
+_OF_BOTH = frozenset(
+    {
+        Ability.PUPIL, Ability.APLANATIC, Ability.POLARISATION, Ability.ATTENUATION,
+        Ability.DISPERSION, Ability.ZERNIKE, Ability.FOCAL_SHIFT, Ability.REFERENCE,
+        Ability.PLATES,
+    }
+)  # fmt: skip
+_OF_RAYS = _OF_BOTH | {Ability.ATTENUATION_AROUND, Ability.FALLOFF}
+
 COUNTED_RAYS = Scheme(
     name="vogel",
     module="octsim.schemes.vogel",
@@ -124,6 +144,12 @@ COUNTED_RAYS = Scheme(
     effort="rays",
     cost=of_rays,
     counts_rays=True,
+    honours=_OF_RAYS
+    | {
+        Ability.ODD_ALONG,
+        Ability.FIBRE_FALLOFF,
+        Ability.WAIST,
+    },
 )
 """The thesis's: a sunflower spiral of rays, each followed through the whole tree."""
 
@@ -134,6 +160,7 @@ LIGHT_PATHS = Scheme(
     effort="accuracy",
     cost=of_paths,
     controls_error=True,
+    honours=_OF_RAYS,
     steepest=0.92,
     presets={
         "draft": {"accuracy": 3e-2}, "standard": {"accuracy": 1e-4}, "reference": {"accuracy": 1e-8}
@@ -149,16 +176,11 @@ FULL_WAVE = Scheme(
     cost=of_waves,
     light="waves",
     controls_error=True,
-    honours=frozenset(
-        {
-            Ability.PUPIL, Ability.APLANATIC, Ability.POLARISATION, Ability.OFF_AXIS,
-            Ability.AZIMUTH,
-        }
-    ),
+    honours=_OF_BOTH | {Ability.OFF_AXIS, Ability.AZIMUTH},
     mode_field_diameter=5.0,
     instrument=(
         "scene", "objective.numerical_aperture", "objective.magnification", "objective.pupil",
-        "objective.apodisation",
+        "objective.apodisation", "objective.zernike", "objective.focal_shift",
     ),
     presets={"exact": {"accuracy": 1e-4}},
 )  # fmt: skip

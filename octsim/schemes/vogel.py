@@ -4,7 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.optics.beam import vogel_beam
+from octsim.optics.polarisation import detected_fields
 from octsim.optics.scene import Scene
+from octsim.schemes.counted_over_band import light_of_spiral, sampled_spiral
 from octsim.schemes.field_sum import field_of_rays
 from octsim.schemes.light import (
     AccuracyStatus,
@@ -13,7 +15,9 @@ from octsim.schemes.light import (
     LightAt,
     Optics,
     Options,
+    Sampled,
 )
+from octsim.schemes.reference_arm import with_reference
 from octsim.tracing.tree import trace
 
 
@@ -31,7 +35,7 @@ def tracer(optics: Optics, options: Options) -> LightAt:
     detector = optics.detector
     beam = vogel_beam(options["rays"], detector.objective_radius, detector.focus_distance)
 
-    def light_at(scene: Scene, focus: float) -> Light:
+    def plain(scene: Scene, focus: float) -> Light:
         found = trace(
             scene, beam, detector, focus, optics.max_intersections, options["min_amplitude"]
         )
@@ -46,13 +50,28 @@ def tracer(optics: Optics, options: Options) -> LightAt:
             found.outcomes,
         )
 
+    thesis = optics.plain
+
+    def light_at(scene: Scene, focus: float) -> Light | Sampled:
+        if thesis and not scene.attenuates:
+            return plain(scene, focus)
+        find = sampled_spiral if optics.sampled else light_of_spiral
+        return find(optics, options, scene, focus, scene.attenuates)
+
     return light_at
 
 
 def field(
-    light: Light, wavenumber: NDArray[np.float64], _optics: Optics, _options: Options
+    light: Light | Sampled, wavenumber: NDArray[np.float64], optics: Optics, _options: Options
 ) -> Field:
-    """Return the field of the detected rays, summed one by one."""
-    return field_of_rays(
-        light.amplitude, light.rough_amplitude, light.optical_path_length, wavenumber
-    )
+    """Return the field of the detected rays, summed one by one, and of a reference arm."""
+    if isinstance(light, Sampled):
+        found = light.field_at(wavenumber)
+    else:
+        found = field_of_rays(
+            light.amplitude, light.rough_amplitude, light.optical_path_length, wavenumber
+        )
+    share = np.ones(1, np.complex128)
+    if optics.effects.vectorial:
+        share = detected_fields(optics.polarisation, np.eye(2, dtype=complex)[np.newaxis])[:, 0]
+    return with_reference(found, optics.effects.reference, wavenumber, share)

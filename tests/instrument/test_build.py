@@ -6,7 +6,13 @@ from typing import Any
 import pytest
 
 from octsim.config.load import load_config
-from octsim.instrument.build import detector_of, polarisation_of, pupil_of, scene_of
+from octsim.instrument.build import (
+    detector_of,
+    polarisation_of,
+    pupil_of,
+    scene_of,
+    surface_names,
+)
 from octsim.optics.polarisation import LEFT, UNPOLARISED, Polarisation
 from octsim.optics.pupil import FibrePupil, GaussianPupil, Pupil, UniformPupil
 from octsim.optics.scene import Cylinder, Plane
@@ -70,3 +76,19 @@ def test_a_scene_is_what_its_keys_say() -> None:
     sine = config.objective.numerical_aperture / 1.5
     radius = config.objective.focus_distance * sine / sqrt(1 - sine**2)
     assert detector_of(config).objective_radius == pytest.approx(radius)
+
+
+def test_plates_are_the_layers_with_the_swept_one_between() -> None:
+    film = {"medium": "neuron", "thickness": "swept"}
+    thick = {"medium": "glass", "thickness": "0.5 um"}
+    between = ["glass", thick, film, {"medium": "water", "thickness": "1 um"}, "glass"]
+    given = {"layers": between, "cylinders": [], "attenuation": {"neuron": "100 /cm"}}
+    config = load_config({"scene": given})
+    scene = scene_of(config, 2.0)
+    planes = [surface for surface in scene.surfaces if isinstance(surface, Plane)]
+    # the glass above z = 0 belongs to the slide
+    assert [plane.height for plane in planes] == [0.5, 2.5, 3.5]
+    assert scene.surface_names == surface_names(config) == ("P", "Q", "S")
+    assert [region.name for region in scene.regions] == ["glass", "neuron", "water", "glass 2"]
+    assert [region.attenuation for region in scene.regions] == [0.0, 0.01, 0.0, 0.0]
+    assert planes[-1].above != scene.objective

@@ -16,7 +16,7 @@ from octsim.config.load import load_config
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.point_entries import light_from_bytes, light_to_bytes
 from octsim.instrument.point_keys import instrument_key, point_key
-from octsim.schemes.light import AccuracyStatus, Found, Light, Waves
+from octsim.schemes.light import AccuracyStatus, Found, Light, Sampled, Waves
 
 LONG = st.integers(-(2**63), 2**63 - 1)
 
@@ -33,16 +33,27 @@ def lights(draw: st.DrawFn) -> Light:
         draw(LONG),
         draw(st.sampled_from(AccuracyStatus)),
         draw(st.none() | arrays(np.int64, 7, elements=LONG)),
+        draw(st.none() | arrays(np.float64, (3, rays))),
     )
 
 
 def bits(light: Found) -> list[object]:
     """Give all that light holds, so that NaN is NaN and −0 is not 0."""
     return [
-        value.tobytes() if isinstance(value, np.ndarray)
+        bits(value) if isinstance(value, Light)
+        else value.tobytes() if isinstance(value, np.ndarray)
         else struct.pack("d", value) if isinstance(value, float) else value
         for value in light
     ]  # fmt: skip
+
+
+@st.composite
+def sampled(draw: st.DrawFn) -> Sampled:
+    samples, fields = draw(st.integers(0, 5)), draw(st.integers(1, 4))
+    return Sampled(
+        draw(lights()), draw(arrays(np.float64, samples)),
+        draw(arrays(np.complex128, (fields, samples))), draw(st.floats()),
+    )  # fmt: skip
 
 
 @st.composite
@@ -57,7 +68,7 @@ def waves(draw: st.DrawFn) -> Waves:
     )  # fmt: skip
 
 
-@given(lights() | waves())
+@given(lights() | sampled() | waves())
 def test_light_comes_back_to_the_bit(light: Found) -> None:
     again = light_from_bytes(light_to_bytes(light))
     assert bits(again) == bits(light)
@@ -85,7 +96,7 @@ def test_counts_and_statuses_that_cannot_be_are_refused(
     rays: int, counted: int, status: int
 ) -> None:
     with pytest.raises(ValueError, match=r"light|AccuracyStatus"):
-        light_from_bytes(struct.pack("<qqqqd", rays, counted, 1, status, 0.0))
+        light_from_bytes(struct.pack("<qqqqqd", rays, counted, 0, 1, status, 0.0))
 
 
 def test_arrays_of_different_lengths_are_refused() -> None:

@@ -30,7 +30,7 @@ class Scattering(NamedTuple):
 class _Side(NamedTuple):
     """What the boundary condition needs of one medium."""
 
-    n: float
+    n: complex
     kappa: Array
     """Over k; imaginary where light decays."""
     skew: Array
@@ -51,8 +51,9 @@ def scattering(
 
     with Z of κ₂a, J₃ of κ₃a and :math:`\alpha = i k_y m / a\, (1/\kappa_2^2 - 1/\kappa_3^2)`.
     """
+    neuron = complex(scene.n_neuron, scene.kappa) if scene.kappa else scene.n_neuron
     outside, inside = (
-        _side(index, along, k, waves, scene.radius) for index in (scene.n_water, scene.n_neuron)
+        _side(index, along, k, waves, scene.radius) for index in (scene.n_water, neuron)
     )
     size = scene.radius * k[:, np.newaxis]
     in_water, within = (kinds(size * side.kappa, waves) for side in (outside, inside))
@@ -69,7 +70,7 @@ def scattering(
 
 
 def _side(
-    index: float, along: NDArray[np.float64], k: NDArray[np.float64], waves: int, radius: float
+    index: complex, along: NDArray[np.float64], k: NDArray[np.float64], waves: int, radius: float
 ) -> _Side:
     # beyond the medium's index light decays in it
     kappa = np.emath.sqrt(index**2 - along**2)

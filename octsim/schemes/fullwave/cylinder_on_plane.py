@@ -21,6 +21,8 @@ class CylinderOnPlane(NamedTuple):
     diameter: float
     offset: float = 0.0
     """Of the axis, across it, from the optical axis."""
+    kappa: float = 0.0
+    """Of the cylinder: κ of its index n + iκ."""
 
     @property
     def radius(self) -> float:
@@ -43,13 +45,14 @@ def azimuth_of(scene: Scene) -> float:
     return next(one.azimuth for one in scene.surfaces if isinstance(one, Cylinder))
 
 
-def cylinder_on_plane(scene: Scene) -> CylinderOnPlane:
-    """Return a scene in numbers.
+def cylinder_on_plane(scene: Scene, wavenumber: float = 1.0) -> CylinderOnPlane:
+    """Return a scene in numbers, at a wavenumber (1/µm); any, where its indices are constant.
 
     Raises
     ------
     OctsimError
-        If it is another scene than one cylinder over one plane.
+        If it is another scene than one cylinder over one plane, or light is lost outside of the
+        cylinder.
     """
     match scene.surfaces:
         case (Plane() as plane, Cylinder() as cylinder):
@@ -59,11 +62,17 @@ def cylinder_on_plane(scene: Scene) -> CylinderOnPlane:
                 f"scene: {len(scene.surfaces)} surfaces given, but scheme fullwave solves for one "
                 "cylinder over one plane; give tracing.scheme: paths"
             )
-    glass, water, neuron = (
-        region.material.index(1.0).real for region in (plane.below, plane.above, cylinder.inside)
-    )
+    regions = plane.below, plane.above, cylinder.inside
+    glass, water, neuron = (region.material.index(wavenumber).real for region in regions)
+    for region in regions[:2]:
+        if region.attenuates:
+            raise OctsimError(
+                f"scene: {region.name} attenuates, but scheme fullwave has a cylinder alone that "
+                "does; give tracing.scheme: paths or vogel"
+            )
     return CylinderOnPlane(
         glass, water, neuron, cylinder.z - cylinder.radius - plane.height, 2 * cylinder.radius,
         # an axis turned about the vertical one through (x, 0) is closer
         cylinder.x * math.cos(cylinder.azimuth),
+        cylinder.inside.attenuation_at(wavenumber) / (2 * wavenumber),
     )  # fmt: skip

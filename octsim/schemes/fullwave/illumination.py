@@ -9,6 +9,7 @@ with F = :math:`(E_y, Z_0 H_y)` of an aplanatic objective (Richards & Wolf, Proc
 (1959)).
 """
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,6 +21,9 @@ from octsim.schemes.fullwave.gauss_legendre import gauss_legendre
 from octsim.schemes.fullwave.plane import normal, reflection
 
 Array = NDArray[Any]
+Wavefront = Callable[[Array, Array], Array]
+"""Returns an aberration W (µm) at points of the pupil, in units of its radius: across the cylinder,
+and along it, in which it is even."""
 
 
 class Lit(NamedTuple):
@@ -61,6 +65,7 @@ def illumination(
     k: NDArray[np.float64],
     waves: int,
     nodes: int,
+    wavefront: Wavefront | None = None,
 ) -> list[Lit]:
     """Return the waves of both polarisations, those of mirror classes that are not 0.
 
@@ -75,6 +80,8 @@ def illumination(
         Wavenumbers, 1/µm.
     waves, nodes : int
         Largest order M, and Gauss–Legendre nodes over k_x / k > 0.
+    wavefront : callable, optional
+        Aberration of the pupil.
     """
     x, w = gauss_legendre(nodes)
     reach = np.sqrt(aperture**2 - along**2)[:, np.newaxis]
@@ -91,15 +98,14 @@ def illumination(
     # both halves of the integral over k_x
     measure = reach * w * np.sqrt(scene.n_glass / below)
     travel = weight * measure * np.exp(1j * wavenumber * (above * scene.height - below * focus))
-    offset = wavenumber * across * scene.offset
-    of_class = (np.cos(offset) + 0j, 1j * np.sin(offset))
+    of_class = _over_classes(scene, across, sideways, aperture, wavenumber, wavefront)
     found = []
     for polarisation in (0, 1):
         e, h = _components(polarisation, sideways, across, sine, below, scene.n_glass)
         through = e + r.ee * e + r.eh * h, h + r.he * e + r.hh * h
-        for turned in (0, 1) if scene.offset else (0,):
+        for turned, part_of in enumerate(of_class):
             mirror = polarisation ^ turned
-            part = travel * of_class[turned]
+            part = travel * part_of
             # a matrix for each k_y, over all wavenumbers
             sides = (
                 _over_across(part * field, waves_of)
@@ -107,6 +113,25 @@ def illumination(
             )
             found.append(Lit(polarisation, mirror, *sides))
     return found
+
+
+def _over_classes(
+    scene: CylinderOnPlane, across: Array, sideways: Array, aperture: float, wavenumber: Array,
+    wavefront: Wavefront | None,
+) -> tuple[Array, ...]:  # fmt: skip
+    """Return the parts even and odd in k_x of what an offset and an aberration turn light by.
+
+    The even one alone, where the odd one is 0.
+    """
+    offset = wavenumber * across * scene.offset
+    if wavefront is None:
+        even = np.cos(offset) + 0j
+        return (even, 1j * np.sin(offset)) if scene.offset else (even,)
+    # light that heads to one side comes from the pupil's other one
+    px, py = across / aperture, sideways / aperture
+    ahead = np.exp(1j * (offset + wavenumber * wavefront(-px, py)))
+    back = np.exp(1j * (-offset + wavenumber * wavefront(px, py)))
+    return (ahead + back) / 2, (ahead - back) / 2
 
 
 def _over_across(field: Array, waves: Array) -> Array:

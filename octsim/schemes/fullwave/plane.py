@@ -21,7 +21,9 @@ class Reflection(NamedTuple):
     hh: Array
 
 
-def fresnel(here: Array, beyond: Array, n_here: float, n_beyond: float) -> tuple[Array, Array]:
+def fresnel(
+    here: Array, beyond: Array, n_here: complex, n_beyond: complex
+) -> tuple[Array, Array]:
     """Return r_s, of E, and r_p, of H, for normal components of the wave vector on both sides."""
     e_here, e_beyond = n_here**2, n_beyond**2
     r_s = (here - beyond) / (here + beyond)
@@ -63,7 +65,7 @@ def reflection(
     return Reflection(r_s - w, -v, e_here * v, r_p - w)
 
 
-def normal(index: float, sine: NDArray[np.float64]) -> Array:
+def normal(index: complex, sine: NDArray[np.float64]) -> Array:
     """Return k_z over k in a medium, for the tangential component ρ over k."""
     found: Array = np.sqrt(index**2 - np.square(sine) + 0j)
     return found

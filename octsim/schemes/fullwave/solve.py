@@ -1,5 +1,6 @@
 """The field of one point to an accuracy: solved, compared with itself, and solved better."""
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ from octsim.optics.pupil import Pupil
 from octsim.schemes.field_sum import relative_error
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 from octsim.schemes.fullwave.detection import collected, norm, plane_return
-from octsim.schemes.fullwave.illumination import illumination
+from octsim.schemes.fullwave.illumination import Wavefront, illumination
 from octsim.schemes.fullwave.operators import Operators
 from octsim.schemes.fullwave.orders import (
     MOST_MULTIPLICATIONS,
@@ -34,15 +35,27 @@ _ROUNDING = 2e-14
 """Error over the field's size below which more orders bring nothing."""
 
 
+class Place(NamedTuple):
+    """A scene and the height of the focus (µm), at one wavenumber."""
+
+    scene: CylinderOnPlane
+    focus: float
+
+
 class Point(NamedTuple):
     """What a field is asked for."""
 
     scene: CylinderOnPlane
+    """At the middle of the band."""
     pupil: Pupil
     aperture: float
     """Numerical aperture."""
     focus: float
-    """Height of the focus, µm."""
+    """Height of the focus at the middle of the band, µm."""
+    place_at: Callable[[float], Place] | None = None
+    """Returns scene and focus at a wavenumber, 1/µm, where they depend on it."""
+    wavefront: Wavefront | None = None
+    """Aberration of the pupil, in the frame of the cylinder."""
 
 
 class Solved(NamedTuple):
@@ -72,11 +85,30 @@ def field_at(
     operators : Operators
         Those kept.
     """
-    scene, pupil, aperture, focus = point
+    if point.place_at is None:
+        return _field_in_place(point, k, orders, tolerance, operators)
+    each = []
+    for at in k:
+        scene, focus = point.place_at(float(at))
+        here = point._replace(scene=scene, focus=focus)
+        each.append(_field_in_place(here, np.array([at]), orders, tolerance, operators))
+    return Solved(
+        np.concatenate([one.values for one in each], axis=-1),
+        np.concatenate([one.terms for one in each], axis=-1),
+        sum(one.multiplications for one in each),
+    )
+
+
+def _field_in_place(
+    point: Point, k: NDArray[np.float64], orders: Orders, tolerance: float, operators: Operators
+) -> Solved:
+    """Return the field of a scene and a focus that are the same at all of some wavenumbers."""
+    scene, pupil, aperture, focus = point[:4]
     operator = operators.of(scene, aperture, k, orders)
     lights = illumination(
-        scene, pupil, aperture, focus, operator.along, k, orders.waves, orders.across
-    )
+        scene, pupil, aperture, focus, operator.along, k, orders.waves, orders.across,
+        point.wavefront,
+    )  # fmt: skip
     radial = radial_nodes(aperture, scene.n_glass, focus, float(k.max()))
     whole = norm(pupil, aperture, k, radial) * 4 * np.pi * scene.n_glass
     cylinder = np.zeros((len(operator.cylinder), 2, k.size), np.complex128)
@@ -88,21 +120,13 @@ def field_at(
             density = collected(lit, *scattered(matrix, e, h), scene.n_water, operator.along)
             cylinder[term, lit.polarisation] += (density * operator.along_weight).sum(axis=1)
     cylinder /= whole
-    plane = plane_return(scene, pupil, aperture, focus, k, radial)
+    plane = plane_return(scene, pupil, aperture, focus, k, radial, point.wavefront)
     both = np.broadcast_to(plane, (2, k.size))
     terms = np.stack((both, cylinder[1], cylinder[2]))
     return Solved(plane + cylinder[0], terms, multiplications)
 
 
-def solve(
-    scene: CylinderOnPlane,
-    pupil: Pupil,
-    aperture: float,
-    focus: float,
-    band: tuple[float, float],
-    accuracy: float,
-    operators: Operators,
-) -> Waves:
+def solve(point: Point, band: tuple[float, float], accuracy: float, operators: Operators) -> Waves:
     """Return the detected field of a point over a band, to an accuracy.
 
     The error is estimated from a solution of raised orders at three wavenumbers, and from the last
@@ -111,9 +135,7 @@ def solve(
 
     Parameters
     ----------
-    scene : CylinderOnPlane
-    pupil, aperture, focus
-        What weighs the light over the pupil, numerical aperture, height of the focus (µm).
+    point : Point
     band : (float, float)
         Smallest and largest wavenumber, 1/µm.
     accuracy : float
@@ -121,7 +143,7 @@ def solve(
     operators : Operators
         Where those are kept that several points share.
     """
-    point = Point(scene, pupil, aperture, focus)
+    scene, _, aperture, focus = point[:4]
     orders = first_orders(scene, aperture, focus, band[1], accuracy)
     number = first_nodes(scene, aperture, focus, band, accuracy)
     most = most_nodes(scene, band, accuracy)
@@ -136,7 +158,7 @@ def solve(
             by_orders = 2 * float(np.abs(finer.values - found.values[:, check]).max())
             checked = orders
         slow = np.exp(-1j * k * removed)
-        by_nodes, fall = _left_out(np.abs(coefficients(found.values * slow)))
+        by_nodes, fall = left_out(np.abs(coefficients(found.values * slow)))
         error = by_orders + by_nodes
         largest = float(np.sqrt((np.abs(found.values) ** 2).mean(axis=0).max()))
         reached = relative_error(largest, error) <= accuracy
@@ -165,7 +187,7 @@ def solve(
     )  # fmt: skip
 
 
-def _left_out(series: NDArray[np.float64]) -> tuple[float, float]:
+def left_out(series: NDArray[np.float64]) -> tuple[float, float]:
     """Return what Chebyshev coefficients (N, 2) say of those after them, in size, and their fall.
 
     The last three, and as many times more as they fall slowly: by resonances of a large cylinder.

@@ -13,8 +13,8 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.base.records import layout
-from octsim.optics.detector import falloff
 from octsim.schemes.paths.aperture_tiles import Tile, across, fraction
+from octsim.schemes.paths.falloffs import Parabola, Series, falloff_at
 from octsim.schemes.paths.line_crossings import (
     Cut,
     TileLine,
@@ -63,14 +63,16 @@ def place_of(tile: Tile, symmetric: bool, number: int) -> tuple[float, float]:
 
 
 @register_jitable(forceinline=True)
-def weight_of(x: float, y: float, cos: float, inside: float, radius: float) -> float:
+def weight_of(
+    x: float, y: float, cos: float, inside: float, radius: float, model: Parabola | Series
+) -> float:
     """Return a returning ray's `CheckRays.weight`; x and y are times cos θ."""
     squared = (x * x + y * y) / (radius * radius)
     if squared > (_BESIDE * cos) ** 2:
         return -1.0
     if inside <= 0 or squared >= cos * cos:
         return 0.0
-    return falloff(squared / (cos * cos))
+    return falloff_at(model, squared / (cos * cos), 0.0)
 
 
 @register_jitable(forceinline=True)
@@ -115,8 +117,9 @@ def weight_error(checks: CheckRays, cut: Cut, line: TileLine) -> float:
         for b in range(cut.m):
             inside += line.inside[b] * line.u[b]
         to_x, to_y = to_x * across_place(cut, xi, y), to_y * y
-        weight = max(weight_of(to_x, to_y, cos, inside, cut.detector_radius), 0.0)
-        # at the rim the falloff may jump: that is the rim's error
-        if abs(inside) > 1e-3 * cos * cos or weight == 0:
+        weight = max(weight_of(to_x, to_y, cos, inside, cut.detector_radius, cut.falloff), 0.0)
+        # at the rim the falloff may jump, and at its own edge: that is those edges' error
+        at_edge = cut.falloff.edge * checks.weight[i] == 0 and cut.falloff.edge > 0
+        if not at_edge and (abs(inside) > 1e-3 * cos * cos or weight == 0):
             worst = max(worst, abs(weight - checks.weight[i]))
     return _EVENED_OUT * worst

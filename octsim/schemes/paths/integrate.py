@@ -7,47 +7,56 @@ fit is refined (`refine`), until the whole is within the accuracy.
 """
 
 import math
-from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.base.compiled import compiled
-from octsim.optics.beam import Beam, aim
-from octsim.optics.detector import Detector, acceptance
-from octsim.optics.scene import Plane, Scene
+from octsim.optics.detector import Detector
+from octsim.optics.scene import Scene, Symmetry
+from octsim.optics.turned_rays import STRAIGHT, Straight, Turning
 from octsim.schemes.light import AccuracyStatus, Light
 from octsim.schemes.paths.aperture_tiles import images
-from octsim.schemes.paths.chebyshev import HIGHEST, LOOK
-from octsim.schemes.paths.check_rays import CHECKS
+from octsim.schemes.paths.chebyshev import LOOK
+from octsim.schemes.paths.falloffs import Parabola, Series
+from octsim.schemes.paths.first_orders import light_misses, orders_of, steepest_sine
+from octsim.schemes.paths.kept_rays import WeightedRays, kept, room_for_nodes
 from octsim.schemes.paths.progress import SPARE, PathGoal, Progress, traced
 from octsim.schemes.paths.refine import settle
 from octsim.schemes.paths.strongest import strongest_first
-from octsim.schemes.paths.survey import COLUMNS, part_of_faint, recall, survey_aperture
+from octsim.schemes.paths.survey import part_of_faint, recall, survey_aperture
 from octsim.schemes.paths.tile_nodes import aim_at_tile
 from octsim.schemes.paths.waiting_tiles import OpenTile, pop_strongest
 from octsim.schemes.paths.workspace import (
-    MOST_RAYS,
     Point,
     Survey,
-    WeightedRays,
     Workspace,
-    room_for_nodes,
     room_for_point,
     tables_of,
 )
 from octsim.tracing.faces import Faces, faces_at
 from octsim.tracing.follow import follow
-from octsim.tracing.kernel import trace_amplitudes
 from octsim.tracing.light_paths import steps_of
 from octsim.tracing.tree import check_reach
 
+
+class Integrated(NamedTuple):
+    """The light of a point, and how it was found."""
+
+    light: Light
+    faces: Faces
+    """Of the scene."""
+    launched: tuple[NDArray[np.float64], ...]
+    """Unit directions of the rays at launch, x and y components, and the amplitudes that they
+    carry, without the weights of the integral, (D,) each; where asked for."""
+
+
+PARABOLA = Parabola()
+EVEN = Symmetry(x=True, y=True)
 BUDGET = 1_000_000
 """Segments traced for one point, at most."""
-STEEP = 0.92
-"""Sine of the angle of light, from which on the aperture is surveyed closely."""
 _ATTEMPTS = 4
 _PEAK_SAMPLES = 32
 _ONE_PATH = 0.1  # of the accuracy, that a single path may use
@@ -100,7 +109,7 @@ def _integrate_path(
         aim_at_tile(point, work.tile, work.n, work.m, work.kind, space.beam)
         segments = follow(
             faces, space.face, space.through, meetings, space.beam, work.n * work.m,
-            point.detector, point.focus, space.rays, space.bundle,
+            point.detector, point.focus, point.lens, space.rays, space.bundle,
         )  # fmt: skip
         progress = traced(progress, segments)
 
@@ -149,10 +158,8 @@ def _integrate_all(
 @compiled()
 def _integrate(
     faces: Faces, point: Point, survey_orders: tuple[int, int], orders: tuple[int, int],
-    max_intersections: int, accuracy: float, budget: int, space: Workspace,
+    max_intersections: int, accuracy: float, budget: int, space: Workspace, rays: Any,
 ) -> tuple[Any, ...]:  # fmt: skip
-    # a plain tuple, as in trace_tree
-    rays = room_for_nodes(16 * HIGHEST * HIGHEST)
     accuracy = _MARGIN * accuracy
     faint, segments, scale, missing, count = 1e-3 * accuracy, 0, 0.0, 0.0, 0
     relative, status = _ONE_PATH * accuracy, AccuracyStatus.NOT_REACHED.value
@@ -181,31 +188,92 @@ def _integrate(
             faint *= 0.1
         else:
             relative *= 0.3
-    return (
-        rays.path[:count].copy(), rays.amplitude[:count].copy(),
-        rays.rough_amplitude[:count].copy(), rays.optical_path_length[:count].copy(), missing,
-        segments, status,
+    return kept(rays, count), missing, segments, status
+
+
+def integrate_nodes(
+    scene: Scene,
+    detector: Detector,
+    focus: float,
+    band: tuple[float, float],
+    accuracy: float,
+    max_intersections: int = 11,
+    budget: int = BUDGET,
+    wavenumber: float | None = None,
+    falloff: Parabola | Series = PARABOLA,
+    lens: Straight | Turning = STRAIGHT,
+    even: Symmetry = EVEN,
+    placed: bool = False,
+) -> Integrated:
+    r"""Integrate the field of each light path over the aperture, to a stated accuracy.
+
+    .. math:: E(k) = \sum_p \frac{1}{\pi R^2} \iint_{\mathrm{patch}_p} A_p(x, y)
+              \left(1 - \frac{\rho_p^2}{R_{det}^2}\right) e^{ik\Lambda_p(x, y)}\, dx\, dy
+
+    as a sum over weighted rays, that holds for every wavenumber of the band.
+
+    Parameters
+    ----------
+    scene : Scene
+        Surfaces, and the regions between them; its own mirror image in the plane y = 0.
+    detector : Detector
+        What receives the rays that return; its radius is that within which they are accepted.
+    focus : float
+        Height of the focus above z = 0 as if all were glass, µm; below the focus distance.
+    band : tuple of float
+        Smallest and largest wavenumber, 1/µm.
+    accuracy : float
+        Error that is allowed of the intensity: max |ΔI| / max I over the band.
+    max_intersections : int
+        Surfaces that one ray may meet.
+    budget : int
+        Segments that may be traced; where they do not suffice the status says so.
+    wavenumber : float, optional
+        At which materials are taken, 1/µm; without one in the middle of the band.
+    falloff : Parabola or Series
+        Of the detected amplitude; the thesis's is the parabola.
+    lens : Straight or Turning
+        Whether an aberration turns rays, in and out.
+    even : Symmetry
+        Of what else the field is multiplied by.
+    placed : bool
+        Whether it is asked for where the rays come from.
+
+    Returns
+    -------
+    Integrated
+        Weighted rays, what was left out, and whether the accuracy is reached.
+
+    Raises
+    ------
+    ValueError
+        As `octsim.tracing.tree.check_reach` does, or if something lacks that symmetry.
+    """
+    check_reach(scene, detector, focus, max_intersections)
+    symmetric, mirrored = scene.symmetry.x and even.x, scene.symmetry.y and even.y
+    if not mirrored:
+        raise ValueError("the scene is not symmetric in y, which scheme paths takes for granted")
+    low, high = band
+    middle = (low + high) / 2
+    faces = faces_at(scene, middle if wavenumber is None else wavenumber)
+    point = Point(symmetric, detector, focus, middle, high, falloff, lens, tables_of(symmetric))
+    rays, missing, segments, status = _integrate(
+        faces, point, *orders_of(accuracy, symmetric, steepest_sine(faces, detector)),
+        max_intersections, accuracy, budget, room_for_point(), room_for_nodes(placed),
     )  # fmt: skip
-
-
-def light_misses(scene: Scene, faces: Faces, point: Point) -> bool:
-    """Return whether the outermost light, to either side in x, meets planes alone."""
-    flat = tuple(surface for surface in scene.surfaces if isinstance(surface, Plane))
-    if len(flat) == len(scene.surfaces):
-        return False
-    detector = point.detector
-    radius = np.array([-detector.objective_radius, detector.objective_radius])
-    vx, vy, vz = aim(radius, np.zeros(2), detector.focus_distance)
-    planes = faces_at(replace(scene, surfaces=flat), point.k_mid)
-    for side in (1,) if point.symmetric else (0, 1):
-        beam = Beam(vx[[side]], vy[[side]], vz[[side]], np.ones(1), np.zeros(1, np.int64))
-        met = [
-            trace_amplitudes(faces, beam, detector, acceptance(detector), point.focus, 3, 0.0)[2]
-            for faces in (faces, planes)
-        ]
-        if met[0] == met[1]:
-            return True
-    return False
+    path, amplitude, rough_amplitude, optical_path_length, *launched = rays
+    light = Light(
+        path,
+        amplitude,
+        rough_amplitude,
+        optical_path_length,
+        missing,
+        segments,
+        AccuracyStatus.AT_AN_EDGE
+        if status == AccuracyStatus.REACHED and light_misses(scene, faces, point)
+        else AccuracyStatus(status),
+    )
+    return Integrated(light, faces, tuple(launched))
 
 
 def integrate(
@@ -217,83 +285,9 @@ def integrate(
     max_intersections: int = 11,
     budget: int = BUDGET,
 ) -> Light:
-    r"""Integrate the field of each light path over the aperture, to a stated accuracy.
+    """Return the light of `integrate_nodes` alone, with the thesis's falloff.
 
-    .. math:: E(k) = \sum_p \frac{1}{\pi R^2} \iint_{\mathrm{patch}_p} A_p(x, y)
-              \left(1 - \frac{\rho_p^2}{R_{det}^2}\right) e^{ik\Lambda_p(x, y)}\, dx\, dy
-
-    as a sum over weighted rays, that holds for every wavenumber of the band.
-
-    Parameters
-    ----------
-    scene : Scene
-        Surfaces, and the regions between them; its own mirror image in the plane y = 0. Materials
-        are taken at the middle of the band.
-    detector : Detector
-        What receives the rays that return.
-    focus : float
-        Height of the focus above z = 0 as if all were glass, µm; below the focus distance.
-    band : tuple of float
-        Smallest and largest wavenumber, 1/µm.
-    accuracy : float
-        Error that is allowed of the intensity: max |ΔI| / max I over the band.
-    max_intersections : int
-        Surfaces that one ray may meet.
-    budget : int
-        Segments that may be traced; where they do not suffice the status says so.
-
-    Returns
-    -------
-    Light
-        Weighted rays, what was left out, and whether the accuracy is reached.
-
-    Raises
-    ------
-    ValueError
-        As `octsim.tracing.tree.check_reach` does, or if the scene lacks that symmetry.
+    Arguments and exceptions as there.
     """
-    check_reach(scene, detector, focus, max_intersections)
-    symmetric, mirrored = scene.symmetry
-    if not mirrored:
-        raise ValueError("the scene is not symmetric in y, which scheme paths takes for granted")
-    low, high = band
-    middle = (low + high) / 2
-    faces = faces_at(scene, middle)
-    point = Point(symmetric, detector, focus, middle, high, tables_of(symmetric))
-    path, amplitude, rough_amplitude, optical_path_length, missing, segments, status = _integrate(
-        faces, point, *_orders(accuracy, symmetric, steepest_sine(faces, detector)),
-        max_intersections, accuracy, budget, room_for_point(),
-    )  # fmt: skip
-    return Light(
-        path,
-        amplitude,
-        rough_amplitude,
-        optical_path_length,
-        missing,
-        segments,
-        AccuracyStatus.AT_AN_EDGE
-        if status == AccuracyStatus.REACHED and light_misses(scene, faces, point)
-        else AccuracyStatus(status),
-    )
-
-
-def steepest_sine(faces: Faces, detector: Detector) -> float:
-    """Return the largest sine of light's angle with the axis; above 1 past the critical angle."""
-    radius, distance = detector.objective_radius, detector.focus_distance
-    least = float(min(faces.n_i.min(), faces.n_t.min()))
-    return radius / math.hypot(radius, distance) * faces.n_objective / least
-
-
-def _orders(
-    accuracy: float, symmetric: bool, steepest: float
-) -> tuple[tuple[int, int], tuple[int, int]]:
-    """Return the numbers of nodes along each axis to begin with: of the survey and of a tile."""
-    digits = -math.log10(accuracy)
-    along_s = min(max(3, round(2 + digits)), 9)
-    along_v = max(3, along_s - 2)
-    if steepest > STEEP:
-        # near grazing incidence light goes to and fro, and its way changes fast
-        along_s, along_v = 12, (MOST_RAYS - CHECKS) // 12
-    # where nothing says that patches are near x = 0, all of the aperture is looked at closely
-    survey = (along_s if symmetric else min(COLUMNS, (MOST_RAYS - CHECKS) // along_v)), along_v
-    return survey, (min(max(4, round(digits + 1)), 10), min(max(3, round(0.5 * digits + 1)), 8))
+    found = integrate_nodes(scene, detector, focus, band, accuracy, max_intersections, budget)
+    return found.light

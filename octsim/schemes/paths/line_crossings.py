@@ -16,9 +16,9 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.base.records import layout
-from octsim.optics.detector import falloff
 from octsim.schemes.paths.aperture_tiles import Tile
 from octsim.schemes.paths.chebyshev import HIGHEST, polynomials
+from octsim.schemes.paths.falloffs import Parabola, Series, falloff_at
 from octsim.schemes.paths.polynomial_roots import (
     HALVES,
     MOST_COEFFICIENTS,
@@ -97,6 +97,7 @@ class Cut(NamedTuple):
     tile: Tile
     symmetric: bool
     detector_radius: float
+    falloff: Parabola | Series
     bernstein: BernsteinTables
 
 
@@ -151,8 +152,8 @@ def falloffs(cut: Cut, xi: float, line: TileLine, y: float) -> tuple[float, floa
     scale_x = across_place(cut, xi, y) / (cos * cut.detector_radius)
     scale_y = y / (cos * cut.detector_radius)
     return (
-        falloff((to_x * scale_x) ** 2, (to_y * scale_y) ** 2),
-        falloff((rough_x * scale_x) ** 2, (rough_y * scale_y) ** 2),
+        falloff_at(cut.falloff, (to_x * scale_x) ** 2, (to_y * scale_y) ** 2),
+        falloff_at(cut.falloff, (rough_x * scale_x) ** 2, (rough_y * scale_y) ** 2),
     )
 
 

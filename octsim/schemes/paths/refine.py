@@ -14,6 +14,7 @@ from numba.extending import register_jitable
 from octsim.schemes.paths.aperture_tiles import Tile, area, fraction
 from octsim.schemes.paths.chebyshev import FIT, HIGHEST, LOOK
 from octsim.schemes.paths.check_rays import field_seen, sees_beside
+from octsim.schemes.paths.kept_rays import WeightedRays, keep_tile
 from octsim.schemes.paths.line_crossings import LESS_S, LESS_V
 from octsim.schemes.paths.partial_tiles import MOST_TO_LOOK, look, look_closely
 from octsim.schemes.paths.patch_by_fit import holding
@@ -22,7 +23,6 @@ from octsim.schemes.paths.tile_nodes import (
     CRUDE,
     field_errors,
     followed_of,
-    keep_tile,
     map_errors,
     map_tile,
     rim_errors,
@@ -31,7 +31,7 @@ from octsim.schemes.paths.tile_nodes import (
     weigh_crudely,
 )
 from octsim.schemes.paths.waiting_tiles import MOST_TILES, OpenTile, push, push_halves
-from octsim.schemes.paths.workspace import Point, WeightedRays, Workspace
+from octsim.schemes.paths.workspace import Point, Workspace
 from octsim.tracing.lanes import LANES
 
 # by how much an error falls with each order, typically (its logarithm)
@@ -140,7 +140,9 @@ def _fit(
         close = 0.1 * max(tolerance, 0.1 * relative * field) / strongest
         total, off = weigh(point, tile, n, m, close, space)
         size, error = sum_tile(point, n, m, space)
-        error += (rim_s + rim_v) * total * strongest
+        # what ends at an edge with some amplitude jumps there
+        edge = point.falloff.edge * (map_s + map_v)
+        error += (rim_s + rim_v + edge) * total * strongest
         error += off * max(total * strongest, field if seen else 0.0)
         tolerance = relative * max(goal.scale, progress.size + size)
     if total > 0 and (error <= tolerance or end):

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from octsim.optics.beam import Beam
 from octsim.optics.detector import Acceptance, Outcome
+from octsim.optics.turned_rays import through_lens
 from octsim.schemes.paths.aperture_tiles import Tile, area, between
 from octsim.schemes.paths.chebyshev import LOOK
 from octsim.schemes.paths.check_rays import CHECKS, place_of, weight_of
@@ -32,8 +33,9 @@ def recall(survey: Survey, number: int, point: Point, space: Workspace) -> None:
     for i in range(survey.begin[number], survey.end[number]):
         ray = survey.ray[i]
         note_return(
-            bundle, ray, point.detector, survey.x[i], survey.y[i], survey.vx[i], survey.vy[i]
-        )
+            bundle, ray, point.detector, point.lens, survey.x[i], survey.y[i], survey.vx[i],
+            survey.vy[i],
+        )  # fmt: skip
         bundle.amplitude[ray] = survey.amplitude[i]
     checks.detected[0] = 0
     for i in range(CHECKS):
@@ -43,7 +45,7 @@ def recall(survey: Survey, number: int, point: Point, space: Workspace) -> None:
         if bundle.followed[ray]:
             checks.weight[i] = weight_of(
                 bundle.x[ray], bundle.y[ray], bundle.cos[ray], bundle.inside[ray],
-                point.detector.radius,
+                point.detector.radius, point.falloff,
             )  # fmt: skip
             checks.amplitude[i] = bundle.amplitude[ray]
         if checks.weight[i] > 0:
@@ -100,7 +102,8 @@ def survey_of(
     )  # fmt: skip
     # all that returns: rays beside the detector tell where between them a patch is
     labels, numbers, segments, outcomes = trace_amplitudes(
-        faces, beam, point.detector, Acceptance(np.inf, np.inf), point.focus,
+        faces, through_lens(beam, point.lens), point.detector, Acceptance(np.inf, np.inf),
+        point.focus,
         max_intersections, min_amplitude,
     )  # fmt: skip
     order, firsts = by_path(labels[1])

@@ -1,20 +1,19 @@
 """The nodes of a tile: rays aimed at them, their weights, the field they sum to and its error."""
 
 import math
-from typing import Any
 
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.optics.beam import Beam, aim
-from octsim.optics.detector import falloff
 from octsim.schemes.paths.aperture_tiles import Tile, across, images
 from octsim.schemes.paths.chebyshev import FIT, trailing, transform
 from octsim.schemes.paths.check_rays import weight_error
+from octsim.schemes.paths.falloffs import falloff_at
 from octsim.schemes.paths.line_crossings import LESS_S, LESS_V, Cut
 from octsim.schemes.paths.patch_integrals import moments
-from octsim.schemes.paths.workspace import Point, WeightedRays, Workspace
+from octsim.schemes.paths.workspace import Point, Workspace
 
 CRUDE = 0.25
 """Error of a trapezoid rule where not all rays take the path, over its field."""
@@ -81,8 +80,9 @@ def weigh(
     Returns their sum, and how far off the tile's polynomials put the falloff of check rays.
     """
     cut = Cut(
-        space.returns, n, m, tile, point.symmetric, point.detector.radius, point.tables.bernstein
-    )
+        space.returns, n, m, tile, point.symmetric, point.detector.radius, point.falloff,
+        point.tables.bernstein,
+    )  # fmt: skip
     total = moments(cut, tolerance, point.tables.rules, space.line, space.exact, space.rough)
     _to_nodes(point, space.exact, n, m, n, m, space.between, space.weight)
     _to_nodes(point, space.rough, n - LESS_S, m - LESS_V, n, m, space.between, space.rough_weight)
@@ -140,8 +140,10 @@ def weigh_crudely(
                 bundle.amplitude[k], bundle.optical_path_length[k] = 0.0, 0.0
                 continue
             off_axis = math.hypot(bundle.x[k], bundle.y[k]) / (bundle.cos[k] * radius)
+            squared = off_axis * off_axis
+            collected = falloff_at(point.falloff, squared, 0.0) if squared < 1 else 0.0
             place = 0.25 * (right - left) * (above - below) * math.sqrt(1 - v)
-            space.weight[i, j] = multiplicity * place * max(falloff(off_axis * off_axis), 0.0)
+            space.weight[i, j] = multiplicity * place * collected
             space.rough_weight[i, j] = (1 - CRUDE) * space.weight[i, j]
             size += space.weight[i, j] * abs(bundle.amplitude[k])
     return size, CRUDE * size
@@ -167,36 +169,6 @@ def sum_tile(point: Point, n: int, m: int, space: Workspace) -> tuple[float, flo
         size = max(size, math.hypot(real, imaginary))
         error = max(error, math.hypot(error_real, error_imaginary))
     return size, error
-
-
-@register_jitable
-def _doubled(values: NDArray[Any]) -> NDArray[Any]:
-    """Return room for twice as many values, with these at its begin."""
-    more = np.empty(2 * values.size, values.dtype)
-    for i in range(values.size):
-        more[i] = values[i]
-    return more
-
-
-@register_jitable
-def keep_tile(
-    rays: WeightedRays, count: int, code: int, n: int, m: int, space: Workspace
-) -> tuple[WeightedRays, int]:
-    """Note a tile's weighted nodes; return them all, and their number."""
-    while count + n * m > rays.path.size:
-        rays = WeightedRays(
-            _doubled(rays.path), _doubled(rays.amplitude), _doubled(rays.rough_amplitude),
-            _doubled(rays.optical_path_length),
-        )  # fmt: skip
-    for i in range(n):
-        for j in range(m):
-            amplitude = space.bundle.amplitude[i * m + j]
-            rays.path[count] = code
-            rays.amplitude[count] = space.weight[i, j] * amplitude
-            rays.rough_amplitude[count] = space.rough_weight[i, j] * amplitude
-            rays.optical_path_length[count] = space.bundle.optical_path_length[i * m + j]
-            count += 1
-    return rays, count
 
 
 @register_jitable(forceinline=True)

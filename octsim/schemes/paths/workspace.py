@@ -4,15 +4,16 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.base.records import layout, room
 from octsim.optics.beam import Beam
 from octsim.optics.detector import Detector
+from octsim.optics.turned_rays import Straight, Turning
 from octsim.schemes.paths.aperture_tiles import Tile
 from octsim.schemes.paths.chebyshev import HIGHEST, tables
 from octsim.schemes.paths.check_rays import CHECK_RAYS, CheckRays
+from octsim.schemes.paths.falloffs import Parabola, Series
 from octsim.schemes.paths.line_crossings import MAP, TILE_LINE, Map, TileLine
 from octsim.schemes.paths.patch_by_fit import SEARCH, Search
 from octsim.schemes.paths.patch_integrals import RULES, Rules, fill_rules
@@ -62,9 +63,12 @@ class Point(NamedTuple):
 
     symmetric: bool
     detector: Detector
+    """Its radius is that within which light is accepted."""
     focus: float
     k_mid: float
     k_max: float
+    falloff: Parabola | Series
+    lens: Straight | Turning
     tables: Tables
 
 
@@ -121,15 +125,6 @@ class Workspace:
     """Of the path that is integrated."""
 
 
-class WeightedRays(NamedTuple):
-    """Room for weighted rays: nodes of the integral."""
-
-    path: NDArray[np.int64]
-    amplitude: NDArray[np.float64]
-    rough_amplitude: NDArray[np.float64]
-    optical_path_length: NDArray[np.float64]
-
-
 _rays, _square, _steps = (MOST_RAYS,), (HIGHEST, HIGHEST), (LONGEST,)
 WORKSPACE = layout(
     Workspace, beam=layout(Beam, vx=_rays, vy=_rays, vz=_rays, amplitude=_rays, number=_rays),
@@ -144,9 +139,3 @@ def room_for_point() -> Workspace:
     made: Workspace = room(WORKSPACE)
     made.beam.amplitude[:], made.beam.number[:] = 1.0, np.arange(MOST_RAYS)
     return made
-
-
-@register_jitable
-def room_for_nodes(size: int) -> WeightedRays:
-    """Make room for weighted rays; it grows as they come."""
-    return WeightedRays(np.empty(size, np.int64), np.empty(size), np.empty(size), np.empty(size))

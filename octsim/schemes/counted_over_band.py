@@ -1,0 +1,273 @@
+"""Counted rays whose way or weight depends on the wavenumber: traced at few, summed at all.
+
+What a ray's way gives (where it leaves the focal plane and the objective, its optical path, its
+amplitude) is smooth over the wavenumber as long as it meets the same surfaces, and interpolated.
+Whether it is detected is not, and is judged after that. For rays that do not meet the same surfaces
+at all nodes, or whose interpolation is not close enough, the band is halved, until every one of its
+wavenumbers is traced.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from octsim.optics.detector import RIM, Outcome
+from octsim.optics.scene import Scene
+from octsim.schemes.light import AccuracyStatus, Light, Optics, Options, Sampled
+from octsim.schemes.returned_rays import (
+    FIRST_FIELD,
+    LENGTH,
+    RIM_SQUARED,
+    Returned,
+    Spiral,
+    X,
+    Y,
+    weights,
+)
+
+_NODES, _NODES_OF_PART = 9, 7
+_CLOSE = 2e-10
+"""Error of a ray's field by interpolation, over the largest field of one, that is close enough."""
+_FALL = 0.07  # of coefficients, from one to the next, at most
+_CURVED = 0.25
+"""How far from a straight line between nodes a ray's place may be, over their distance."""
+_AT_ONCE = 2_000_000  # numbers
+
+Floats = NDArray[np.float64]
+Pairs = frozenset[tuple[int, int]]
+"""Numbers of launched rays, and codes of light paths that they take."""
+
+
+class _Tracks(NamedTuple):
+    """What rays have over a band, for those that take the same path at each node: D of them."""
+
+    ray: NDArray[np.int64]
+    path: NDArray[np.int64]
+    coefficients: Floats
+    """Of Chebyshev's polynomials over the band, (Q, M, D)."""
+
+
+class _Fields(NamedTuple):
+    """Fields of rays at wavenumbers (C, K), those by a rougher rule, and segments traced."""
+
+    values: NDArray[np.complex128]
+    rough: NDArray[np.complex128]
+    segments: int
+
+
+def sampled_spiral(
+    optics: Optics, options: Options, scene: Scene, focus: float, lengths: bool
+) -> Sampled:
+    """Return the light of a spiral of rays, with its field at the samples of the band.
+
+    Parameters
+    ----------
+    optics, options, scene, focus, lengths
+        As `octsim.schemes.returned_rays.Spiral` takes them.
+    """
+    spiral, k = Spiral(optics, options, scene, focus, lengths), optics.wavenumber
+    middle = float(k[-1] + k[0]) / 2
+    found = spiral.at(middle)
+    if optics.way_varies:
+        fields = _over_band(spiral, k, None, frozenset())
+    else:
+        tracks = _Tracks(found.ray, found.path, found.numbers[:, np.newaxis])
+        fields = _interpolated(spiral, tracks, k)
+    light = _middle_light(spiral, found, middle, found.segments + fields.segments)
+    return Sampled(light, k, fields.values, float(np.abs(fields.rough - fields.values).max()))
+
+
+def _over_band(spiral: Spiral, k: Floats, only: NDArray[np.int64] | None, known: Pairs) -> _Fields:
+    """Return the fields of rays at wavenumbers (K,), but of those on paths that are known."""
+    number = _NODES if only is None else _NODES_OF_PART
+    if k.size <= number:
+        return _one_by_one(spiral, k, only, known)
+    middle, half = (k[-1] + k[0]) / 2, (k[-1] - k[0]) / 2
+    at = middle + half * chebyshev.chebpts1(number)
+    traced = [_unknown(spiral.at(one, only), known) for one in at.tolist()]
+    tracks, apart = _tracks(spiral, traced, k[-1])
+    whole = _interpolated(spiral, tracks, k)
+    parts = [whole._replace(segments=sum(one.segments for one in traced))]
+    if apart.size:
+        now = known | frozenset(zip(tracks.ray.tolist(), tracks.path.tolist(), strict=True))
+        halves = [_over_band(spiral, part, apart, now) for part in np.array_split(k, 2)]
+        values, rough = (
+            np.concatenate(both, axis=1) for both in list(zip(*halves, strict=True))[:2]
+        )
+        parts.append(_Fields(values, rough, sum(one.segments for one in halves)))
+    return _Fields(
+        sum((one.values for one in parts[1:]), parts[0].values),
+        sum((one.rough for one in parts[1:]), parts[0].rough),
+        sum(one.segments for one in parts),
+    )
+
+
+def _unknown(found: Returned, known: Pairs) -> Returned:
+    """Return the rays that come back on paths that are not known."""
+    if not known:
+        return found
+    pairs = zip(found.ray.tolist(), found.path.tolist(), strict=True)
+    new = np.array([pair not in known for pair in pairs], bool)
+    return found._replace(ray=found.ray[new], path=found.path[new], numbers=found.numbers[:, new])
+
+
+def _possible(spiral: Spiral, numbers: Floats) -> NDArray[np.bool_]:
+    """Return which rays (Q, M, D) may be detected at or between nodes, by straight lines."""
+    reach = (
+        spiral.optics.effects.falloff.reach(spiral.optics.band[0]) * spiral.optics.detector.radius
+    )
+    place, rim = numbers[X] + 1j * numbers[Y], np.sqrt(numbers[RIM_SQUARED])
+    if numbers.shape[1] == 1:
+        near, within = np.abs(place), rim
+    else:
+        step = np.diff(place, axis=0)
+        length = np.abs(step)
+        # where between two nodes the line is closest to the axis
+        squared = np.where(length > 0, length, 1) ** 2
+        along = -(place[:-1] * step.conj()).real / squared
+        near = np.abs(place[:-1] + along.clip(0, 1) * step) - _CURVED * length
+        within = np.minimum(rim[:-1], rim[1:]) - _CURVED * np.abs(np.diff(rim, axis=0))
+    found: NDArray[np.bool_] = (near.min(axis=0) < reach) & (within.min(axis=0) < 1.001)
+    return found
+
+
+def _tracks(
+    spiral: Spiral, traced: list[Returned], largest_k: float
+) -> tuple[_Tracks, NDArray[np.int64]]:
+    """Return the rays that can be interpolated, and the numbers of others that may be detected."""
+    ray, path = (np.concatenate([one[column] for one in traced]) for column in (0, 1))
+    codes, code = np.unique(path, return_inverse=True)
+    # a number for each pair of ray and path
+    every, place, counts = np.unique(
+        ray * codes.size + code, return_inverse=True, return_counts=True
+    )
+    first = 0
+    whole = np.full((len(traced[0].numbers), len(traced), len(every)), np.nan)
+    for node, one in enumerate(traced):
+        whole[:, node, place[first : first + one.ray.size]] = one.numbers
+        first += one.ray.size
+    every = np.stack((every // codes.size, codes[every % codes.size]), axis=1)
+    throughout = counts == len(traced)
+    some = whole[..., ~throughout]
+    known = [some[..., i][:, ~np.isnan(some[X, :, i])] for i in range(some.shape[-1])]
+    seen = [i for i, one in enumerate(known) if _possible(spiral, one[..., np.newaxis])[0]]
+    numbers, pairs = whole[..., throughout], every[throughout]
+    possible = _possible(spiral, numbers)
+    numbers, pairs = numbers[..., possible], pairs[possible]
+    to_coefficients = np.linalg.inv(
+        chebyshev.chebvander(chebyshev.chebpts1(len(traced)), len(traced) - 1)
+    )
+    coefficients = to_coefficients @ numbers
+    close = _close(spiral, numbers, coefficients, largest_k)
+    return (
+        _Tracks(pairs[close, 0], pairs[close, 1], coefficients[..., close]),
+        np.unique(np.concatenate((every[~throughout][seen, 0], pairs[~close, 0]))),
+    )
+
+
+def _close(
+    spiral: Spiral, numbers: Floats, coefficients: Floats, largest_k: float
+) -> NDArray[np.bool_]:
+    """Return whether what the coefficients of rays leave out is little enough, (D,)."""
+    # coefficients that follow are no larger than the last, which can be small by chance
+    left = np.maximum(np.abs(coefficients[:, -1]), _FALL * np.abs(coefficients[:, -2]))
+    own = slice(FIRST_FIELD, FIRST_FIELD + spiral.parts)
+    field = np.abs(numbers[own]).max(axis=(0, 1), initial=0.0)
+    off = left[own].sum(axis=0) + field * (
+        largest_k * left[LENGTH] + 2 * (left[X] + left[Y]) / spiral.optics.detector.radius
+    )
+    close: NDArray[np.bool_] = off <= _CLOSE * spiral.brightest
+    return close
+
+
+def _interpolated(spiral: Spiral, tracks: _Tracks, k: Floats) -> _Fields:
+    """Return the fields of tracks over a band at wavenumbers that span it, (K,)."""
+    place = np.linspace(-1, 1, k.size)
+    polynomials = chebyshev.chebvander(place, tracks.coefficients.shape[1] - 1)
+    step = max(1, _AT_ONCE // max(1, tracks.coefficients[:, 0].size))
+    spans = [slice(begin, begin + step) for begin in range(0, k.size, step)]
+    found = [
+        _fields(spiral, tracks.ray, polynomials[span] @ tracks.coefficients, k[span])
+        for span in spans
+    ]
+    values, rough = zip(*found, strict=True)
+    return _Fields(np.concatenate(values, axis=1), np.concatenate(rough, axis=1), 0)
+
+
+def _one_by_one(spiral: Spiral, k: Floats, only: NDArray[np.int64] | None, known: Pairs) -> _Fields:
+    """Return the fields of rays that are traced at every wavenumber."""
+    found, segments = [], 0
+    for at in k:
+        one = _unknown(spiral.at(float(at), only), known)
+        found.append(_fields(spiral, one.ray, one.numbers[:, np.newaxis], np.array([at])))
+        segments += one.segments
+    values, rough = zip(*found, strict=True)
+    return _Fields(np.concatenate(values, axis=1), np.concatenate(rough, axis=1), segments)
+
+
+def _fields(
+    spiral: Spiral, ray: NDArray[np.int64], numbers: Floats, k: Floats
+) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    """Return the detected fields (C, K) of rays with numbers (Q, K, D), and by a rougher rule."""
+    phase = k[:, np.newaxis] * numbers[LENGTH]
+    turned = _weights(spiral, numbers, k) * (np.cos(phase) + 1j * np.sin(phase))
+    end = FIRST_FIELD + spiral.parts
+    fields = numbers[FIRST_FIELD:end]
+    if spiral.optics.effects.vectorial:
+        real, imaginary = np.split(fields, 2)
+        fields = real + 1j * imaginary
+    # every second ray is a spiral of half the rays
+    even = ray % spiral.options["rays"] % 2 == 0
+    parts = fields * turned
+    return parts.sum(axis=-1), 2 * parts[..., even].sum(axis=-1)
+
+
+def _weights(spiral: Spiral, numbers: Floats, k: Floats) -> Floats:
+    """Return what weighs rays with numbers (Q, K, D): pupil, detector, and what regions take."""
+    weight = weights(spiral.optics, numbers, k)
+    if spiral.lengths:
+        ways, regions = numbers[FIRST_FIELD + spiral.parts :], spiral.scene.regions
+        taken = np.array([[one.attenuation_at(at) for at in k.tolist()] for one in regions])
+        weight = weight * np.exp(-0.5 * (taken[..., np.newaxis] * ways).sum(axis=0))
+    return weight
+
+
+def light_of_spiral(
+    optics: Optics, options: Options, scene: Scene, focus: float, lengths: bool
+) -> Light:
+    """Return the rays of a spiral that serve all wavenumbers, with the weights of all effects.
+
+    Parameters are those of `sampled_spiral`.
+    """
+    spiral, middle = Spiral(optics, options, scene, focus, lengths), sum(optics.band) / 2
+    found = spiral.at(middle)
+    weight = weights(optics, found.numbers[:, np.newaxis], np.array([middle]))[0]
+    ways = found.numbers[FIRST_FIELD + spiral.parts :] if lengths else None
+    return _rays(spiral, found, found.numbers[FIRST_FIELD] * weight, ways)
+
+
+def _middle_light(spiral: Spiral, found: Returned, middle: float, segments: int) -> Light:
+    """Return the rays at the middle of the band; of polarised light their magnitude."""
+    weight = _weights(spiral, found.numbers[:, np.newaxis], np.array([middle]))[0]
+    fields = found.numbers[FIRST_FIELD : FIRST_FIELD + spiral.parts]
+    amplitude = fields[0] * weight
+    if spiral.optics.effects.vectorial:
+        amplitude = np.sqrt((fields**2).sum(axis=0) / (spiral.parts / 2)) * weight
+    return _rays(spiral, found, amplitude, None)._replace(segments=segments)
+
+
+def _rays(spiral: Spiral, found: Returned, amplitude: Floats, ways: Floats | None) -> Light:
+    kept = amplitude != 0
+    outcomes = found.outcomes.copy()
+    # what the trees accept, and the objective or the detector does not
+    past = int((~kept & (found.numbers[RIM_SQUARED] > RIM**2)).sum())
+    outcomes[[Outcome.DETECTED, Outcome.OFF_OBJECTIVE]] += [-int((~kept).sum()), past]
+    outcomes[Outcome.OFF_DETECTOR] += int((~kept).sum()) - past
+    even = found.ray % spiral.options["rays"] % 2 == 0
+    return Light(
+        found.path[kept], amplitude[kept], np.where(even, 2 * amplitude, 0.0)[kept],
+        found.numbers[LENGTH][kept], 0.0, found.segments, AccuracyStatus.NOT_CONTROLLED,
+        outcomes, ways if ways is None else ways[:, kept],
+    )  # fmt: skip

@@ -1,0 +1,240 @@
+"""Light paths whose ways or weights depend on the wavenumber, or of polarised light: their field.
+
+At a few nodes of a band all paths are integrated anew. Between them a path's field, without the
+phase of its mean optical path, is a polynomial in the wavenumber; where it is none, the band is
+halved.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from octsim.optics.polarisation import jones_rows
+from octsim.optics.scene import Scene
+from octsim.schemes.field_sum import relative_error
+from octsim.schemes.light import AccuracyStatus, Light, Optics, Sampled, attenuated
+from octsim.schemes.paths.path_sum import field_of_paths
+from octsim.schemes.paths.weighed import Followed, Weighed, followed, weighed
+
+_FASTEST, _SLOWEST = 0.003, 0.97  # fall of coefficients, from two to the next two
+_PHASE_DEGREE = 2
+_ATTEMPTS, _BETTER = 3, 0.1
+"""Integrals of one node, at most, and how much smaller the error of the next one is."""
+_HALF = 0.5  # of the accuracy, for the nodes and for what is between them
+
+
+class _Node(NamedTuple):
+    """The fields of P light paths at one wavenumber."""
+
+    light: Light
+    k: float
+    codes: NDArray[np.int64]
+    fields: NDArray[np.complex128]
+    """(C, P)."""
+    length: NDArray[np.float64]
+    """Mean optical path, (P,), µm."""
+    error: float
+
+
+@dataclass(frozen=True)
+class _Point:
+    """A point whose light depends on the wavenumber."""
+
+    optics: Optics
+    scene: Scene
+    focus: float
+    lengths: bool
+
+    def followed_at(self, k: float, accuracy: float) -> Followed:
+        """Return its rays at a wavenumber; the same for all, where their ways are the same."""
+        return self._followed(k if self.optics.way_varies else sum(self.optics.band) / 2, accuracy)
+
+    @cached_property
+    def _followed(self) -> Callable[[float, float], Followed]:
+        return cache(lambda k, accuracy: followed(
+            self.optics, self.scene, self.focus, k, accuracy, self.lengths
+        ))  # fmt: skip
+
+
+def light_of_paths(
+    optics: Optics, scene: Scene, focus: float, accuracy: float, lengths: bool
+) -> Light:
+    """Return the rays of a point that serve all wavenumbers, with the weights of all effects."""
+    asked, middle = accuracy, sum(optics.band) / 2
+    for _ in range(_ATTEMPTS):
+        rays = followed(optics, scene, focus, middle, asked, lengths)
+        light = weighed(optics, scene, rays, middle).light
+        found = field_of_paths(
+            light.path, light.amplitude, light.rough_amplitude, light.optical_path_length,
+            light.missing, optics.wavenumber, asked,
+        )  # fmt: skip
+        if relative_error(float(np.abs(found.values).max(initial=0.0)), found.error) <= accuracy:
+            break
+        asked *= _BETTER
+    return light
+
+
+def sampled_paths(
+    optics: Optics, scene: Scene, focus: float, accuracy: float, lengths: bool
+) -> Sampled:
+    """Return the light of a point with its field at the samples of the band.
+
+    Parameters
+    ----------
+    optics : Optics
+    scene : Scene
+    focus : float
+        Height of the focus at the reference, µm.
+    accuracy : float
+        Error that is allowed of the intensity: max |ΔI| / max I over the band.
+    lengths : bool
+        Whether a region takes light.
+    """
+    if not optics.varies:
+        return _of_one_node(optics, scene, focus, accuracy, lengths)
+    point, asked = _Point(optics, scene, focus, lengths), _HALF * accuracy
+    for _ in range(_ATTEMPTS):
+        values, errors, lights = _over_band(point, optics.wavenumber, asked, 0.0)
+        error = max(errors)
+        largest = float(np.sqrt((np.abs(values) ** 2).mean(axis=0).max(initial=0.0)))
+        if relative_error(largest, error) <= accuracy:
+            break
+        asked *= _BETTER
+    statuses = [one.status for one in lights]
+    light = lights[len(lights) // 2]._replace(
+        segments=sum(one.segments for one in lights),
+        status=_worst(statuses, relative_error(largest, error), accuracy),
+    )
+    return Sampled(light, optics.wavenumber, values, error)
+
+
+def _over_band(
+    point: _Point, k: NDArray[np.float64], accuracy: float, scale: float
+) -> tuple[NDArray[np.complex128], list[float], list[Light]]:
+    """Return the fields at wavenumbers that are evenly spaced (C, K), their errors, and the light.
+
+    A path whose light ceases to be detected somewhere in the band is no polynomial there: the band
+    is halved until that matters no more. `scale` is the largest field that is known of elsewhere.
+    """
+    number = math.ceil(4 - math.log10(accuracy) / 3)
+    if k.size <= number:
+        each = [_node(point, one, accuracy) for one in k.tolist()]
+        values = np.stack([one.fields.sum(axis=1) for one in each], axis=1)
+        return values, [one.error for one in each], [one.light for one in each]
+    middle, half = (k[-1] + k[0]) / 2, (k[-1] - k[0]) / 2
+    at = middle + half * chebyshev.chebpts1(number)
+    each = [_node(point, one, accuracy) for one in at.tolist()]
+    lights = [one.light for one in each]
+    phase, slow = _coefficients(each)
+    left = _left_out(np.abs(slow))
+    scale = max(scale, *(_size(one) for one in each))
+    if relative_error(scale, left) > accuracy:
+        found = [_over_band(point, part, accuracy, scale) for part in np.array_split(k, 2)]
+        values = np.concatenate([one[0] for one in found], axis=1)
+        return values, found[0][1] + found[1][1], lights + found[0][2] + found[1][2]
+    place = np.linspace(-1, 1, k.size)
+    turned = np.exp(1j * chebyshev.chebval(place, phase))
+    values = (chebyshev.chebval(place, slow) * turned).sum(axis=1)
+    return values, [left + max(one.error for one in each)], lights
+
+
+def _left_out(sizes: NDArray[np.float64]) -> float:
+    """Return what Chebyshev coefficients (M, C, P) of paths say of those that would follow."""
+    last, before = sizes[-2:].sum(axis=0), sizes[-4:-2].sum(axis=0)
+    fall = np.clip(last / np.where(before > 0, before, 1), _FASTEST, _SLOWEST)
+    left = (2 * last * fall / (1 - fall)).sum(axis=-1)
+    return float(left.max(initial=0.0))
+
+
+def _of_one_node(
+    optics: Optics, scene: Scene, focus: float, accuracy: float, lengths: bool
+) -> Sampled:
+    """Return the light of rays that are the same at all wavenumbers, in each detected field."""
+    k, asked, middle = optics.wavenumber, accuracy, sum(optics.band) / 2
+    for _ in range(_ATTEMPTS):
+        rays = followed(optics, scene, focus, middle, asked, lengths)
+        found = weighed(optics, scene, rays, middle)
+        light = attenuated(found.light, scene, middle)
+        rows, values, error = _rows(optics, found), [], 0.0
+        for row in rows:
+            parts = [
+                field_of_paths(
+                    light.path, light.amplitude * part, light.rough_amplitude * part,
+                    light.optical_path_length, light.missing, k, asked,
+                )
+                for part in (row.real, row.imag)
+            ]  # fmt: skip
+            values.append(parts[0].values[0] + 1j * parts[1].values[0])
+            error = max(error, float(np.hypot(parts[0].error, parts[1].error)))
+        whole = np.stack(values)
+        largest = float(np.sqrt((np.abs(whole) ** 2).mean(axis=0).max(initial=0.0)))
+        if relative_error(largest, error) <= accuracy:
+            break
+        asked *= _BETTER
+    status = _worst([light.status], relative_error(largest, error), accuracy)
+    return Sampled(light._replace(status=status), k, whole, error)
+
+
+def _node(point: _Point, k: float, accuracy: float) -> _Node:
+    optics, scene = point.optics, point.scene
+    found = weighed(optics, scene, point.followed_at(k, accuracy), k)
+    light = attenuated(found.light, scene, k)
+    # the rays of a path stand together
+    begin = np.flatnonzero(np.diff(light.path, prepend=-1))
+    turned = np.exp(1j * k * light.optical_path_length) * _rows(optics, found)
+
+    def of_paths(values: NDArray[Any]) -> NDArray[Any]:
+        whole: NDArray[Any] = values[..., :0]
+        return np.add.reduceat(values, begin, axis=-1) if begin.size else whole
+
+    fields, size = of_paths(light.amplitude * turned), of_paths(np.abs(light.amplitude))
+    rough = of_paths(light.rough_amplitude * turned)
+    reach = of_paths(np.abs(light.amplitude) * light.optical_path_length)
+    error = float(np.abs(rough - fields).sum(axis=-1).max(initial=0.0)) + light.missing
+    return _Node(light, k, light.path[begin], fields, reach / np.where(size > 0, size, 1), error)
+
+
+def _size(node: _Node) -> float:
+    return float(np.sqrt((np.abs(node.fields.sum(axis=1)) ** 2).mean()))
+
+
+def _coefficients(
+    each: Sequence[_Node],
+) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
+    """Return Chebyshev coefficients of each path's phase, (M, P), and slow field, (M, C, P)."""
+    codes = np.unique(np.concatenate([one.codes for one in each]))
+    fields = np.zeros((len(each), each[0].fields.shape[0], codes.size), np.complex128)
+    length = np.full((len(each), codes.size), np.nan)
+    for node, one in enumerate(each):
+        column = np.searchsorted(codes, one.codes)
+        fields[node][:, column], length[node, column] = one.fields, one.length
+    # where a path is too faint to be there, any length will do
+    length = np.where(np.isnan(length), np.nanmean(length, axis=0), length)
+    place, k = chebyshev.chebpts1(len(each)), np.array([one.k for one in each])
+    # of a low degree: a mean length is known only as well as the integrals are
+    phase = chebyshev.chebfit(place, k[:, np.newaxis] * length, _PHASE_DEGREE)
+    turned = np.exp(-1j * chebyshev.chebval(place, phase)).T
+    slow = fields * turned[:, np.newaxis]
+    to_coefficients = np.linalg.inv(chebyshev.chebvander(place, len(each) - 1))
+    return phase, np.tensordot(to_coefficients, slow, axes=1)
+
+
+def _rows(optics: Optics, found: Weighed) -> NDArray[np.complex128]:
+    """Return what rays have in each detected field over their amplitudes, (C, D)."""
+    if not optics.effects.vectorial:
+        return found.fields[:1]
+    return jones_rows(optics.polarisation, 0.0) @ found.fields
+
+
+def _worst(statuses: Sequence[AccuracyStatus], error: float, accuracy: float) -> AccuracyStatus:
+    """Return the status of all nodes together, and of the whole's error."""
+    amiss = [one for one in statuses if one != AccuracyStatus.REACHED]
+    if amiss:
+        return amiss[0]
+    return AccuracyStatus.REACHED if error <= accuracy else AccuracyStatus.NOT_REACHED
