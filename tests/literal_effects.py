@@ -192,7 +192,9 @@ def collect(setup: Setup, colour: Colour, rays: Rays) -> Array:
     v = rays.direction
     to_objective = (colour.focus - setup.focus_distance) / v[:, 2]
     at_objective = rays.position[:, :2] + to_objective[:, np.newaxis] * v[:, :2]
-    within = np.hypot(*at_objective.T) <= colour.aperture * RIM
+    # the rim is the pupil's, to which an aberrated ray is that of no aberration
+    _, moved = aberration(setup, colour.n[GLASS] * v[:, :2] / setup.numerical_aperture)
+    within = np.hypot(*(at_objective - moved).T) <= colour.aperture * RIM
     rays, v, to_objective = rays[within], v[within], to_objective[within]
 
     to_focal_plane = colour.focus / v[:, 2]  # back, where the focus is above z = 0

@@ -6,6 +6,7 @@ from typing import Any
 from octsim.config.derive import parts_of
 from octsim.config.light import FibreMode
 from octsim.config.models import Config
+from octsim.schemes.cost import SAMPLE_BYTES, SAMPLED, PointCost
 from octsim.schemes.table import SCHEMES, Scheme
 
 
@@ -25,15 +26,34 @@ def sampled(config: Config) -> bool:
     Such rays differ from wavenumber to wavenumber, or they have a polarisation.
     """
     polarised = (config.polarisation.input, config.polarisation.analyser) != (None, None)
+    weighed = config.detector.falloff == "fibre" or isinstance(config.pupil, FibreMode)
+    each = polarised or weighed or way_varies(config)
+    return scheme_of(config).light == "rays" and each
+
+
+def way_varies(config: Config) -> bool:
+    """Return whether the way of light depends on the wavenumber, in a plain config."""
     beam, shift = config.beam, config.objective.focal_shift
-    varies = (
-        config.dispersive
-        or (shift is not None and shift.moves)
-        or (beam.waist is not None and beam.wavelength == "each")
-        or config.detector.falloff == "fibre"
-        or isinstance(config.pupil, FibreMode)
-    )
-    return scheme_of(config).light == "rays" and (polarised or varies)
+    moves = shift is not None and shift.moves
+    return config.dispersive or moves or (beam.waist is not None and beam.wavelength == "each")
+
+
+def rate_name(config: Config) -> str:
+    """Name the points of a plain config: those of a name take about the same."""
+    name = scheme_of(config).rate_name(options_of(config))
+    if way_varies(config):
+        return f"{name} by wavenumber"
+    return f"{name} sampled" if sampled(config) else name
+
+
+def point_cost(config: Config) -> PointCost:
+    """Return what a point of a plain config takes, by rates measured on one machine."""
+    scheme = scheme_of(config)
+    cost = scheme.cost(options_of(config), config.sweep.diameters.stop)
+    if sampled(config):
+        cost = cost._replace(size=cost.size + SAMPLE_BYTES * config.spectrum.samples)
+    times = scheme.by_wavenumber if way_varies(config) else SAMPLED if sampled(config) else 1.0
+    return cost._replace(seconds=times * cost.seconds)
 
 
 def light_keys(config: Config) -> tuple[str, ...]:

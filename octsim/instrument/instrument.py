@@ -11,7 +11,7 @@ from octsim.base.errors import OctsimError
 from octsim.base.provenance import source_digest
 from octsim.base.threads import each
 from octsim.config.models import Config
-from octsim.config.scheme import options_of, scheme_of, traced_keys
+from octsim.config.scheme import options_of, rate_name, scheme_of, traced_keys
 from octsim.instrument.build import optics_of, scene_of
 from octsim.instrument.point_keys import instrument_key
 from octsim.instrument.points import Points
@@ -134,7 +134,7 @@ class Instrument:
     def _light_at(self) -> Callable[[float, float], Found]:
         if self._points is None:
             return self._find
-        return self._points.keeping(self._find, self._key, self.scheme.rate_name(self._options))
+        return self._points.keeping(self._find, self._key, rate_name(self.config))
 
     def _key(self) -> bytes:
         code = source_digest(

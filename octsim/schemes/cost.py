@@ -10,6 +10,11 @@ from typing import Any, NamedTuple
 
 _RAY_BYTES = 32  # of the four numbers that are kept of a ray
 
+SAMPLE_BYTES = 72
+"""Of a sample at which the field of rays is kept, with up to four fields."""
+SAMPLED = 4.0
+"""How many times as long rays take that are the same at all wavenumbers, but not their fields."""
+
 _NODE_BYTES = 136  # of a wavenumber, and four complex fields of two polarisations
 _MOST_EFFORT = 16.0  # more is beyond the most orders, and is not solved
 

@@ -7,8 +7,6 @@ at all nodes, or whose interpolation is not close enough, the band is halved, un
 wavenumbers is traced.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
@@ -26,6 +24,7 @@ from octsim.schemes.returned_rays import (
     Y,
     weights,
 )
+from octsim.schemes.track_sums import Fields, Floats, Tracks, fields_of, summed, weights_of
 
 _NODES, _NODES_OF_PART = 9, 7
 _CLOSE = 2e-10
@@ -33,28 +32,8 @@ _CLOSE = 2e-10
 _FALL = 0.07  # of coefficients, from one to the next, at most
 _CURVED = 0.25
 """How far from a straight line between nodes a ray's place may be, over their distance."""
-_AT_ONCE = 2_000_000  # numbers
-
-Floats = NDArray[np.float64]
 Pairs = frozenset[tuple[int, int]]
 """Numbers of launched rays, and codes of light paths that they take."""
-
-
-class _Tracks(NamedTuple):
-    """What rays have over a band, for those that take the same path at each node: D of them."""
-
-    ray: NDArray[np.int64]
-    path: NDArray[np.int64]
-    coefficients: Floats
-    """Of Chebyshev's polynomials over the band, (Q, M, D)."""
-
-
-class _Fields(NamedTuple):
-    """Fields of rays at wavenumbers (C, K), those by a rougher rule, and segments traced."""
-
-    values: NDArray[np.complex128]
-    rough: NDArray[np.complex128]
-    segments: int
 
 
 def sampled_spiral(
@@ -73,13 +52,13 @@ def sampled_spiral(
     if optics.way_varies:
         fields = _over_band(spiral, k, None, frozenset())
     else:
-        tracks = _Tracks(found.ray, found.path, found.numbers[:, np.newaxis])
-        fields = _interpolated(spiral, tracks, k)
+        tracks = Tracks(found.ray, found.path, found.numbers[:, np.newaxis])
+        fields = summed(spiral, tracks, k)
     light = _middle_light(spiral, found, middle, found.segments + fields.segments)
     return Sampled(light, k, fields.values, float(np.abs(fields.rough - fields.values).max()))
 
 
-def _over_band(spiral: Spiral, k: Floats, only: NDArray[np.int64] | None, known: Pairs) -> _Fields:
+def _over_band(spiral: Spiral, k: Floats, only: NDArray[np.int64] | None, known: Pairs) -> Fields:
     """Return the fields of rays at wavenumbers (K,), but of those on paths that are known."""
     number = _NODES if only is None else _NODES_OF_PART
     if k.size <= number:
@@ -88,7 +67,7 @@ def _over_band(spiral: Spiral, k: Floats, only: NDArray[np.int64] | None, known:
     at = middle + half * chebyshev.chebpts1(number)
     traced = [_unknown(spiral.at(one, only), known) for one in at.tolist()]
     tracks, apart = _tracks(spiral, traced, k[-1])
-    whole = _interpolated(spiral, tracks, k)
+    whole = summed(spiral, tracks, k)
     parts = [whole._replace(segments=sum(one.segments for one in traced))]
     if apart.size:
         now = known | frozenset(zip(tracks.ray.tolist(), tracks.path.tolist(), strict=True))
@@ -96,8 +75,8 @@ def _over_band(spiral: Spiral, k: Floats, only: NDArray[np.int64] | None, known:
         values, rough = (
             np.concatenate(both, axis=1) for both in list(zip(*halves, strict=True))[:2]
         )
-        parts.append(_Fields(values, rough, sum(one.segments for one in halves)))
-    return _Fields(
+        parts.append(Fields(values, rough, sum(one.segments for one in halves)))
+    return Fields(
         sum((one.values for one in parts[1:]), parts[0].values),
         sum((one.rough for one in parts[1:]), parts[0].rough),
         sum(one.segments for one in parts),
@@ -135,7 +114,7 @@ def _possible(spiral: Spiral, numbers: Floats) -> NDArray[np.bool_]:
 
 def _tracks(
     spiral: Spiral, traced: list[Returned], largest_k: float
-) -> tuple[_Tracks, NDArray[np.int64]]:
+) -> tuple[Tracks, NDArray[np.int64]]:
     """Return the rays that can be interpolated, and the numbers of others that may be detected."""
     ray, path = (np.concatenate([one[column] for one in traced]) for column in (0, 1))
     codes, code = np.unique(path, return_inverse=True)
@@ -162,7 +141,7 @@ def _tracks(
     coefficients = to_coefficients @ numbers
     close = _close(spiral, numbers, coefficients, largest_k)
     return (
-        _Tracks(pairs[close, 0], pairs[close, 1], coefficients[..., close]),
+        Tracks(pairs[close, 0], pairs[close, 1], coefficients[..., close]),
         np.unique(np.concatenate((every[~throughout][seen, 0], pairs[~close, 0]))),
     )
 
@@ -182,56 +161,15 @@ def _close(
     return close
 
 
-def _interpolated(spiral: Spiral, tracks: _Tracks, k: Floats) -> _Fields:
-    """Return the fields of tracks over a band at wavenumbers that span it, (K,)."""
-    place = np.linspace(-1, 1, k.size)
-    polynomials = chebyshev.chebvander(place, tracks.coefficients.shape[1] - 1)
-    step = max(1, _AT_ONCE // max(1, tracks.coefficients[:, 0].size))
-    spans = [slice(begin, begin + step) for begin in range(0, k.size, step)]
-    found = [
-        _fields(spiral, tracks.ray, polynomials[span] @ tracks.coefficients, k[span])
-        for span in spans
-    ]
-    values, rough = zip(*found, strict=True)
-    return _Fields(np.concatenate(values, axis=1), np.concatenate(rough, axis=1), 0)
-
-
-def _one_by_one(spiral: Spiral, k: Floats, only: NDArray[np.int64] | None, known: Pairs) -> _Fields:
+def _one_by_one(spiral: Spiral, k: Floats, only: NDArray[np.int64] | None, known: Pairs) -> Fields:
     """Return the fields of rays that are traced at every wavenumber."""
     found, segments = [], 0
     for at in k:
         one = _unknown(spiral.at(float(at), only), known)
-        found.append(_fields(spiral, one.ray, one.numbers[:, np.newaxis], np.array([at])))
+        found.append(fields_of(spiral, one.ray, one.numbers[:, np.newaxis], np.array([at])))
         segments += one.segments
     values, rough = zip(*found, strict=True)
-    return _Fields(np.concatenate(values, axis=1), np.concatenate(rough, axis=1), segments)
-
-
-def _fields(
-    spiral: Spiral, ray: NDArray[np.int64], numbers: Floats, k: Floats
-) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    """Return the detected fields (C, K) of rays with numbers (Q, K, D), and by a rougher rule."""
-    phase = k[:, np.newaxis] * numbers[LENGTH]
-    turned = _weights(spiral, numbers, k) * (np.cos(phase) + 1j * np.sin(phase))
-    end = FIRST_FIELD + spiral.parts
-    fields = numbers[FIRST_FIELD:end]
-    if spiral.optics.effects.vectorial:
-        real, imaginary = np.split(fields, 2)
-        fields = real + 1j * imaginary
-    # every second ray is a spiral of half the rays
-    even = ray % spiral.options["rays"] % 2 == 0
-    parts = fields * turned
-    return parts.sum(axis=-1), 2 * parts[..., even].sum(axis=-1)
-
-
-def _weights(spiral: Spiral, numbers: Floats, k: Floats) -> Floats:
-    """Return what weighs rays with numbers (Q, K, D): pupil, detector, and what regions take."""
-    weight = weights(spiral.optics, numbers, k)
-    if spiral.lengths:
-        ways, regions = numbers[FIRST_FIELD + spiral.parts :], spiral.scene.regions
-        taken = np.array([[one.attenuation_at(at) for at in k.tolist()] for one in regions])
-        weight = weight * np.exp(-0.5 * (taken[..., np.newaxis] * ways).sum(axis=0))
-    return weight
+    return Fields(np.concatenate(values, axis=1), np.concatenate(rough, axis=1), segments)
 
 
 def light_of_spiral(
@@ -250,7 +188,7 @@ def light_of_spiral(
 
 def _middle_light(spiral: Spiral, found: Returned, middle: float, segments: int) -> Light:
     """Return the rays at the middle of the band; of polarised light their magnitude."""
-    weight = _weights(spiral, found.numbers[:, np.newaxis], np.array([middle]))[0]
+    weight = weights_of(spiral, found.numbers[:, np.newaxis], np.array([middle]))[0]
     fields = found.numbers[FIRST_FIELD : FIRST_FIELD + spiral.parts]
     amplitude = fields[0] * weight
     if spiral.optics.effects.vectorial:

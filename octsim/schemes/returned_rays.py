@@ -149,7 +149,6 @@ class Spiral:
         vx, vy, cos_in = beam.vx[found.ray], beam.vy[found.ray], beam.vz[found.ray]
         cos_out = np.sqrt(1 - found.vx**2 - found.vy**2)
         far = detector.focus_distance / cos_out
-        rim = np.hypot(found.x + far * found.vx, found.y + far * found.vy)
         x, y, length = found.x, found.y, found.optical_path_length
         if effects.aberration and effects.turned:
             to_fibre = detector.magnification, detector.focal_length
@@ -162,6 +161,7 @@ class Spiral:
                 length + effects.aberration.wavefront(-over * vx, -over * vy)
                 + effects.aberration.wavefront(over * found.vx, over * found.vy)
             )  # fmt: skip
+        rim = np.hypot(x + far * found.vx, y + far * found.vy)
         amplitude = beam.amplitude[found.ray]
         if effects.aplanatic:
             amplitude = amplitude * np.sqrt(cos_in / cos_out)

@@ -74,6 +74,8 @@ class Scheme:
     """Whether its light is a number of rays, each of which is counted."""
     controls_error: bool = False
     """Whether it reaches ``tracing.accuracy``, in one band, or says that it does not."""
+    by_wavenumber: float = 10.0
+    """How many times as long a point takes whose light's way depends on the wavenumber."""
     steepest: float = math.inf
     """Numerical aperture over the water's index above which it can miss light."""
     honours: frozenset[Ability] = frozenset()
@@ -144,6 +146,7 @@ COUNTED_RAYS = Scheme(
     effort="rays",
     cost=of_rays,
     counts_rays=True,
+    by_wavenumber=100.0,
     honours=_OF_RAYS
     | {
         Ability.ODD_ALONG,

@@ -12,13 +12,12 @@ from octsim.base.files import standing
 from octsim.config.derive import by_light_paths, counting_rays
 from octsim.config.grid import axes, combinations
 from octsim.config.models import Config
-from octsim.config.scheme import options_of, scheme_of
+from octsim.config.scheme import point_cost, rate_name, scheme_of
 from octsim.datasets.catalog import CATALOG
 from octsim.datasets.keys import keys_behind, stages_of
 from octsim.datasets.stage import RAYS, Stage
 from octsim.instrument.point_store import open_store
 from octsim.schemes.cost import PointCost
-from octsim.stages.workload import point_cost
 
 _SUMMING = 1e-7  # s a sample, of summing a spectrum
 _PATH_BYTES = 40  # of what is kept of each path of a point
@@ -26,11 +25,6 @@ _JOB_BYTES = 3e8  # of a process with its libraries, compiled code and blocks
 _SAMPLE_MEMORY = 1000.0  # bytes, of each sample of the spectra in a block
 _ENOUGH = 50  # points, to know what one takes
 _SHORT = 60.0  # s; of what takes less nothing needs to be said
-
-
-def rate_name(config: Config) -> str:
-    """Name the points of a plain config: those of a name take about the same."""
-    return scheme_of(config).rate_name(options_of(config))
 
 
 class Cost(NamedTuple):

@@ -8,7 +8,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from octsim.config.models import Config
-from octsim.config.scheme import scheme_of
+from octsim.config.scheme import point_cost, scheme_of
 from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
@@ -19,7 +19,7 @@ from octsim.stages.kept_light import stored_by_kind
 from octsim.stages.ray_shares import SAMPLES, ray_shares, strongest_first
 from octsim.stages.swept_light import swept_diameters
 from octsim.stages.wave_shares import NAMES, wave_shares
-from octsim.stages.workload import point_cost, points_per_block
+from octsim.stages.workload import points_per_block
 from octsim.tracing.light_paths import path_name
 
 _NOT_THERE = {

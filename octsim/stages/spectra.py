@@ -8,7 +8,7 @@ import xarray as xr
 from octsim.base.threads import each_block
 from octsim.config.grid import Combination
 from octsim.config.models import Config
-from octsim.config.scheme import scheme_of
+from octsim.config.scheme import point_cost, scheme_of
 from octsim.datasets.files import flags
 from octsim.datasets.layout import Coordinate, Layout, filling
 from octsim.datasets.reader import Stored
@@ -16,7 +16,7 @@ from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.instrument.instrument import Instrument
 from octsim.schemes.light import AccuracyStatus, Found
 from octsim.stages.kept_light import lights_in, stored_by_kind
-from octsim.stages.workload import point_cost, points_per_block
+from octsim.stages.workload import points_per_block
 
 _ROUGH = 0.1  # of the largest intensity; an error that a slope does not survive
 

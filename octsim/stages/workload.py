@@ -5,10 +5,9 @@ from typing import NamedTuple
 
 from octsim.config.grid import combinations
 from octsim.config.models import Config
-from octsim.config.scheme import options_of, scheme_of
+from octsim.config.scheme import point_cost
 from octsim.datasets.catalog import CATALOG
 from octsim.datasets.keys import keys_behind, stages_of
-from octsim.schemes.cost import PointCost
 
 SCATTERED = tuple(row.name for row in CATALOG.values() if row.traces)
 """Stages that trace, and so may take long."""
@@ -25,15 +24,6 @@ def points_per_block(bytes_per_point: float, seconds_per_point: float = 0.0) -> 
     seconds = max(seconds_per_point, _BLOCK_SECONDS / _MOST_POINTS)
     most = min(_BLOCK_BYTES / bytes_per_point, _BLOCK_SECONDS / seconds, _MOST_POINTS)
     return max(1, int(most))
-
-
-def point_cost(config: Config) -> PointCost:
-    """Return what a point of a plain config takes.
-
-    The rates are the scheme's own, measured on one machine; what they decide, the size of blocks,
-    is to be the same on all.
-    """
-    return scheme_of(config).cost(options_of(config), config.sweep.diameters.stop)
 
 
 class Work(NamedTuple):

@@ -203,10 +203,12 @@ def note_return(
     bundle: Bundle, ray: int, detector: Detector, lens: Straight | Turning, x: float, y: float,
     vx: float, vy: float,
 ) -> None:  # fmt: skip
-    """Note the line along which a ray returns, by its place in the focal plane and direction."""
+    """Note the line along which a ray returns, by its place in the focal plane and direction.
+
+    A turned one is taken for that of no aberration, to the fibre and to the rim.
+    """
     cos = math.sqrt(max(1 - vx * vx - vy * vy, 0.0))
     across, along, _ = turned(lens, vx, vy, 1.0)
     bundle.followed[ray] = True
-    bundle.x[ray], bundle.y[ray] = (x - across) * cos, (y - along) * cos
-    bundle.cos[ray] = cos
-    bundle.inside[ray] = rim_margin(detector, x * cos, y * cos, vx, vy, cos)
+    bundle.x[ray], bundle.y[ray], bundle.cos[ray] = (x - across) * cos, (y - along) * cos, cos
+    bundle.inside[ray] = rim_margin(detector, bundle.x[ray], bundle.y[ray], vx, vy, cos)

@@ -42,7 +42,7 @@ EVERY: list[dict[str, Any]] = [
 NOBODY: list[tuple[dict[str, Any], str]] = [
     ({"layers": ["glass", {"medium": "water", "thickness": "9 um"}, "glass"]}, "scene.layers: [glass, water, glass] given, but {} has two layers"),
     ({"layers": ["glass", "glass"]}, "scene.layers: [glass, glass] given, but {} has two layers"),
-    ({"layers": ["glass", {"medium": "neuron", "thickness": "swept"}, "water"], "cylinders": []}, "scene.cylinders: [] given, but {} needs a cylinder"),
+    ({"layers": ["glass", {"medium": "glass", "thickness": "swept"}, "glass"], "cylinders": []}, "scene.cylinders: [] given, but {} needs a cylinder"),
     ({"cylinders": [{"medium": "water"}]}, "scene.cylinders.0.medium: water given, but {} needs a cylinder"),
     ({"cylinders": [NEURON, {**NEURON, "diameter": "1 um", "x": "2 um"}]}, "scene.cylinders: [neuron, neuron] given, but {} has one cylinder"),
     ({"cylinders": [{**NEURON, "elevation": "1 deg"}]}, "scene.cylinders.0.elevation: 1 deg given, but {} has the cylinder level"),

@@ -12,6 +12,7 @@ from octsim.config.abilities import asked_of_scheme
 from octsim.config.derive import merge
 from octsim.config.load import load_config
 from octsim.instrument.instrument import Instrument
+from octsim.optics.zernike import Aberration
 from octsim.schemes.light import AccuracyStatus
 from octsim.schemes.table import SCHEMES
 
@@ -117,3 +118,49 @@ def test_what_a_neuron_takes_of_waves_is_what_beer_and_lambert_say() -> None:
     index = complex(1.39, 0.1 / (2 * 8.3))
     reflected = abs((1.33 - index) / (1.33 + index)) / ((1.39 - 1.33) / (1.39 + 1.33))
     assert near == pytest.approx(reflected, rel=1e-3)
+
+
+@pytest.mark.parametrize("scheme", ["vogel", "paths", "fullwave"])
+def test_even_aberrations_of_a_focus_shift_are_that_shift(scheme: str) -> None:
+    aperture, shift, n = 0.3, 0.1, 1.52
+    # W = -dz n cos θ over the pupil, by Gauss's rule in the square of its radius
+    x, w = np.polynomial.legendre.leggauss(40)
+    radius = np.sqrt((x + 1) / 2)
+    path = -shift * np.sqrt(n**2 - (radius * aperture) ** 2)
+    terms = {
+        number: f"{float((w / 2 * path * of.wavefront(radius, 0 * radius)).sum())!r} um"
+        for number in (1, 4, 11, 22, 37)
+        for of in [Aberration(((number, 1.0),))]
+    }
+    wide = {"objective": {"numerical_aperture": aperture}}
+    settings: dict[str, Any] = {"accuracy": 1e-7, "rays": 3000}
+    aberrated = instrument(scheme, merge(wide, {"objective": {"zernike": terms}}), **settings)
+    moved = instrument(scheme, wide, **settings).spectrum(DIAMETER, FOCUS + shift).intensity
+    off = np.abs(aberrated.spectrum(DIAMETER, FOCUS).intensity - moved).max()
+    assert off <= 1e-5 * moved.max()
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.15])
+def test_a_tilted_wavefront_moves_the_focus_of_waves_sideways(offset: float) -> None:
+    # W = 2 a p_x has the focus at 2 a / NA
+    tilt = 0.05
+    cylinder = {"medium": "neuron", "x": f"{offset!r} um"}
+    tilted = instrument(
+        "fullwave",
+        {
+            "objective": {"zernike": {2: f"{tilt!r} um"}, "pupil": {"gaussian": 1.0}},
+            "scene": {"cylinders": [cylinder]},
+        },
+        accuracy=1e-8,
+    )
+    beside = offset - 2 * tilt / 1.2
+    moved = instrument(
+        "fullwave",
+        {
+            "objective": {"pupil": {"gaussian": 1.0}},
+            "scene": {"cylinders": [{**cylinder, "x": f"{beside!r} um"}]},
+        },
+        accuracy=1e-8,
+    )
+    found, expected = (one.spectrum(DIAMETER, FOCUS).intensity for one in (tilted, moved))
+    assert np.abs(found - expected).max() <= 2e-8 * expected.max()

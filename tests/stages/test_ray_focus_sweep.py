@@ -22,7 +22,7 @@ def test_it_is_the_focus_sweep_of_light_paths_to_the_bit() -> None:
 
 
 def test_it_leaves_out_what_light_paths_cannot_do() -> None:
-    beyond = {"objective": {"pupil": {"gaussian": 0.5}}, "polarisation": {"input": "30 deg"}}
+    beyond = {"scene": {"cylinders": [{"medium": "neuron", "x": "50 nm", "azimuth": "5 deg"}]}}
     by_rays = octsim.ray_focus_sweep(octsim.load_config(WAVES, beyond))
     own = octsim.focus_sweep(octsim.load_config(PATHS))
     assert np.array_equal(by_rays["intensity"], own["intensity"])

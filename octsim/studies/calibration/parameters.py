@@ -119,7 +119,12 @@ def _filled(config: Config, times: float) -> Overlay:
 
 
 def _is_filled(config: Config) -> bool:
-    return _can(Ability.PUPIL)(config) and config.pupil != "uniform"
+    return config.pupil != "uniform"
+
+
+def _is_polarised(config: Config) -> bool:
+    given = config.polarisation
+    return _of_waves(config) or given.input is not None or given.analyser is not None
 
 
 def _direction(config: Config) -> float:
@@ -170,7 +175,7 @@ PARAMETERS: Mapping[str, Parameter] = {
         0.01, lambda _: 1.0, _filled, lambda _: (0.05, 20.0), counts=_is_filled, unit="1"
     ),
     "polarisation": Parameter(
-        0.04, _direction, _directed, counts=_can(Ability.POLARISATION), unit="rad"
+        0.04, _direction, _directed, counts=_is_polarised, unit="rad"
     ),
     "offset": _keyed(0.01, _offset_key, counts=_can(Ability.OFF_AXIS)),
     "wavelength_min": _keyed(2e-4, lambda _: "spectrum.wavelength.min"),
