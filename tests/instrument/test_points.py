@@ -52,6 +52,21 @@ def test_only_new_diameters_are_traced(
     assert count(scheme, sweep(301)) == (0, 301)
 
 
+@pytest.mark.parametrize("scheme", [{}, PATHS])
+def test_another_attenuation_traces_nothing(
+    scheme: dict[str, Any], count: Callable[..., tuple[int, int]]
+) -> None:
+    def taken(of_neuron: str) -> dict[str, Any]:
+        return {"scene": {"attenuation": {"neuron": of_neuron}}}
+
+    assert count(scheme, sweep(11)) == (11, 0)
+    # the lengths of ways are found with the first
+    assert count(scheme, sweep(11), taken("100 /cm")) == (11, 0)
+    assert count(scheme, sweep(11), taken("20 /mm")) == (0, 11)
+    assert count(scheme, sweep(11), {"scene": {"attenuation": {"water": "7 /cm"}}}) == (0, 11)
+    assert count(scheme, sweep(11)) == (0, 11)
+
+
 def test_what_a_point_does_not_depend_on_traces_nothing(
     count: Callable[..., tuple[int, int]],
 ) -> None:

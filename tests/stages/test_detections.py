@@ -9,6 +9,7 @@ from made_runs import WHOLE, every_stage
 
 import octsim
 from octsim.base.errors import OctsimError
+from octsim.instrument.instrument import Instrument
 from octsim.optics.scene import NEURON_ON_GLASS
 from octsim.schemes.light import AccuracyStatus
 from octsim.stages.detections import stored_rays
@@ -99,3 +100,42 @@ def test_a_combination_without_a_focus_law_is_nan_and_the_others_are_there() -> 
     assert "over 2 combinations" in summary(found["phase_slope"])
     with pytest.raises(OctsimError, match="there is no law"):
         every_stage(gridded({"focus_law.fraction.stop": [0.41, 0.42]}))
+
+
+EFFECTS = {
+    "dispersion": {"scene": {"refractive_index": {"neuron": {"cauchy": [1.3815, 0.004]}}}},
+    "polarisation": {"polarisation": {"input": "30 deg", "analyser": "80 deg"}},
+    "nothing": {},
+}
+
+
+def test_fields_of_rays_that_differ_by_wavenumber_are_kept_beside_them() -> None:
+    few = {
+        "tracing": {"rays": 200}, "spectrum": {"samples": 24},
+        "sweep": {"diameters": {"num": 3}, "focus": {"slope": 0.58, "intercept": "69 nm"}},
+    }  # fmt: skip
+    for name, overlay in EFFECTS.items():
+        config = octsim.load_config(few, overlay)
+        detected = octsim.detections(config)
+        assert ("field_real" in detected) == (name != "nothing")
+        spectra = octsim.spectra(config, detected)
+        instrument = Instrument(config)
+        for row, (diameter, focus) in enumerate(
+            zip(spectra["diameter"].values.tolist(), spectra["focus"].values.tolist(), strict=True)
+        ):
+            expected = instrument.spectrum(diameter, focus)
+            assert np.array_equal(spectra["intensity"][row], expected.intensity)
+            assert float(spectra["intensity_error"][row]) == expected.error
+
+
+def test_a_grid_can_have_an_effect_in_some_of_its_combinations() -> None:
+    few = {
+        "tracing": {"rays": 200}, "spectrum": {"samples": 24},
+        "sweep": {"diameters": {"num": 3}, "focus": {"slope": 0.58, "intercept": "69 nm"}},
+    }  # fmt: skip
+    config = octsim.load_config(few, {"grid": {"polarisation.input": ["none", "left"]}})
+    whole = octsim.spectra(config, octsim.detections(config))
+    for place, given in enumerate(("none", "left")):
+        alone = octsim.load_config(few, {"polarisation": {"input": given}})
+        expected = octsim.spectra(alone, octsim.detections(alone))["intensity"]
+        assert np.array_equal(whole["intensity"].values[place], expected.values)
