@@ -64,6 +64,8 @@ class Stage:
     """Of one that works on the sweep's spectra: processor time (s) and bytes of each sample."""
     beside: bool = False
     """Whether it is beside a run, of a single config, and made when it is asked for."""
+    plates: bool = False
+    """Whether one beside a run is of scenes without a cylinder too."""
     summary: str = ""
     """The function that says in one line what the dataset comes to, if there is one."""
     doubts: str = ""

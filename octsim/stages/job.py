@@ -6,6 +6,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from octsim.base.errors import ConfigError
 from octsim.base.named import called, named, names
 from octsim.config.grid import without_grid
 from octsim.config.models import Config
@@ -94,6 +95,11 @@ def _make(
             _stream(row, work, job, config, sources, points)
         return
     single = without_grid(config, row.name)
+    if not (row.plates or config.scene.cylinders):
+        raise ConfigError(
+            f"scene.cylinders: [] given, but {row.name} needs a cylinder; ask for it in a config "
+            "with one"
+        )
     tables = [read(files[name], name, single) if name in files else None for name in row.after]
     found = called(work, single, *tables, threads=job.threads, points=points, prepare=job.prepare)
     write(found, output)

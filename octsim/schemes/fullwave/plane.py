@@ -21,9 +21,7 @@ class Reflection(NamedTuple):
     hh: Array
 
 
-def fresnel(
-    here: Array, beyond: Array, n_here: complex, n_beyond: complex
-) -> tuple[Array, Array]:
+def fresnel(here: Array, beyond: Array, n_here: complex, n_beyond: complex) -> tuple[Array, Array]:
     """Return r_s, of E, and r_p, of H, for normal components of the wave vector on both sides."""
     e_here, e_beyond = n_here**2, n_beyond**2
     r_s = (here - beyond) / (here + beyond)

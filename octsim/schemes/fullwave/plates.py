@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from octsim.optics.pupil import Pupil
 from octsim.optics.scene import Scene
+from octsim.schemes.cost import MOST_WAVENUMBERS
 from octsim.schemes.field_sum import relative_error
 from octsim.schemes.fullwave.detection import pupil_nodes, returned_by
 from octsim.schemes.fullwave.illumination import Wavefront
@@ -25,8 +26,8 @@ from octsim.schemes.fullwave.solve import left_out
 from octsim.schemes.light import TERMS, AccuracyStatus, Waves
 
 Array = NDArray[Any]
-_FIRST, _MOST = 16, 4096
-"""Wavenumbers in the band to begin with, and the most of them, or of nodes over the pupil."""
+_FIRST, _MOST_RADII = 16, 4096
+"""Wavenumbers in the band to begin with, and the most nodes over the pupil."""
 _CHECKED = 3
 """Wavenumbers at which the integral over the pupil is compared with one of twice the nodes."""
 _ROUNDING = 2e-14
@@ -146,12 +147,14 @@ def solve_plates(
         error = by_radius + by_nodes
         largest = float(np.sqrt((np.abs(found[0]) ** 2).mean(axis=0).max()))
         reached = relative_error(largest, error) <= accuracy or error < _ROUNDING * largest
-        if reached or max(number, radial) >= _MOST:
+        over_pupil = by_radius > by_nodes
+        spent = radial >= _MOST_RADII if over_pupil else number == MOST_WAVENUMBERS
+        if reached or spent:
             break
-        if by_radius > by_nodes:
+        if over_pupil:
             radial, by_radius = 2 * radial, np.inf
         else:
-            number *= 2
+            number = min(2 * number, MOST_WAVENUMBERS)
     status = AccuracyStatus.REACHED if reached else AccuracyStatus.BUDGET_SPENT
     terms = np.concatenate((slow[1:], np.zeros((len(TERMS) - 1, *slow[0].shape), np.complex128)))
     return Waves(k, slow[0], terms, removed, 0.0, error, 0, status)
