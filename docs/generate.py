@@ -11,7 +11,11 @@ import numpy as np
 import xarray as xr
 from calibration_page import calibration_page
 from design_page import design_page
+from detector_page import detector_page
+from diffraction_page import diffraction_page
+from effects_page import effects_page
 from estimators_page import estimators_page
+from interferometers_page import interferometers_page
 from markdown import table
 from maxwell_part import claim
 from pydantic import BaseModel
@@ -393,13 +397,20 @@ if __name__ == "__main__":
         "estimators": lambda: estimators_page(xr.load_dataset(RESULTS / "estimators.nc")),
         "calibration": lambda: calibration_page(RESULTS),
         "validity": lambda: validity_page(xr.load_dataset(RESULTS / "validity.nc")),
+        "diffraction": lambda: diffraction_page(xr.load_dataset(RESULTS / "diffraction.nc")),
+        "interferometers": lambda: interferometers_page(
+            xr.load_dataset(RESULTS / "interferometers.nc")
+        ),
+        "detector": lambda: detector_page(xr.load_dataset(RESULTS / "detector.nc")),
+        "effects": lambda: effects_page(xr.load_dataset(RESULTS / "effects.nc")),
         "design": lambda: design_page(xr.load_dataset(RESULTS / "design.nc")),
     }
     for name, page in pages.items():
         (DOCS / f"{name}.md").write_text(page(), encoding="utf-8")
     drawn = (
         "figure_12", "stability", "tradeoff", "truth", "causes", "spike", "estimators",
-        "calibration", "action_potential", "design", "validity",
+        "calibration", "action_potential", "detector", "effects", "design", "validity",
+        "diffraction", "michelson", "plates",
     )  # fmt: skip
     for figure in drawn:
         shutil.copy(RESULTS / "figures" / f"{figure}.png", DOCS / "figures" / f"{figure}.png")

@@ -12,6 +12,7 @@ digests, the axes of a grid, the archive and the command line all read this tabl
 from collections.abc import Mapping
 
 from octsim.config.models import Config
+from octsim.datasets.catalog_of_thesis import OF_THE_THESIS
 from octsim.datasets.stage import COUNTED, LIGHT, RAYS, SUMMING, Figure, Stage
 from octsim.schemes.table import SCHEMES
 
@@ -164,12 +165,13 @@ _BESIDE = (
         "validity", "octsim.studies.validity.study:validity",
         "Compare rays with Maxwell's equations, one quantity varied at a time",
         reads=(*_COMPARED, "polarisation"), after=("focus_law",), beside=True,
-        summary="octsim.studies.validity.study:summary",
+        plates=True, summary="octsim.studies.validity.study:summary",
         figures=(
             Figure("validity", "octsim.figures.validity:validity_figure",
                    "where rays are within 1, 3 and 10 % of Maxwell's equations"),
         ),
     ),
+    *OF_THE_THESIS,
     Stage(
         "causes", "octsim.studies.causes.study:causes",
         "Tell what makes the phase slope scatter, and spike",
@@ -224,6 +226,30 @@ _BESIDE = (
             Figure("action_potential", "octsim.figures.action_potential:action_potential_figure",
                    "an action potential that is recovered, with its errors",
                    of=("action_potential", "calibration")),
+        ),
+    ),
+    Stage(
+        "detector", "octsim.studies.detector.study:detector",
+        "Compare falloffs and radii of the detector",
+        reads=(*_COMPARED, "polarisation", "beam", "interferometer"), after=("focus_law",),
+        beside=True,
+        summary="octsim.studies.detector.recommended:summary",
+        doubts="octsim.studies.detector.recommended:doubts",
+        figures=(
+            Figure("detector", "octsim.figures.detector:detector_figure",
+                   "ray noise, jumps and distance from Maxwell's, over falloff and radius"),
+        ),
+    ),
+    Stage(
+        "effects", "octsim.studies.effects.study:effects",
+        "Measure what each effect changes, alone and in pairs, and what it costs",
+        reads=(LIGHT, "polarisation", "interferometer", "spectrum", "sweep", "processing"),
+        after=("focus_law",), beside=True,
+        summary="octsim.studies.effects.needed:summary",
+        doubts="octsim.studies.effects.needed:doubts",
+        figures=(
+            Figure("effects", "octsim.figures.effects:effects_figure",
+                   "what each effect changes of the phase slope and the spectrum, and its cost"),
         ),
     ),
     Stage(

@@ -4,6 +4,9 @@ from collections.abc import Mapping
 
 from octsim.datasets.calibration_variables import CALIBRATION
 from octsim.datasets.design_variables import DESIGN
+from octsim.datasets.detector_variables import DETECTOR
+from octsim.datasets.effects_variables import EFFECTS
+from octsim.datasets.thesis_variables import DIFFRACTION, INTERFEROMETERS
 from octsim.datasets.validity_variables import VALIDITY
 
 MEANINGS: Mapping[str, tuple[str, str]] = {
@@ -239,7 +242,11 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "likelihood_offset": ("um", "mean error of the diameter by maximum likelihood"),
     **CALIBRATION,
     **DESIGN,
+    **DETECTOR,
+    **EFFECTS,
     **VALIDITY,
+    **DIFFRACTION,
+    **INTERFEROMETERS,
 }
 _STANDARD_ERROR = "_standard_error"
 

@@ -90,9 +90,7 @@ def _detected(spiral: Spiral, numbers: Floats) -> tuple[NDArray[np.bool_], NDArr
 def _meets(distance: Floats, edge: float) -> NDArray[np.bool_]:
     """Return whether a distance (N, D) may be that of an edge at or between nodes."""
     near = _NEAR_AN_EDGE * np.abs(np.diff(distance, axis=0)).max(axis=0, initial=0.0)
-    found = (distance.min(axis=0) - near <= edge) & (
-        edge <= distance.max(axis=0) + near
-    )
+    found = (distance.min(axis=0) - near <= edge) & (edge <= distance.max(axis=0) + near)
     met: NDArray[np.bool_] = found & (near > 0)
     return met
 

@@ -66,7 +66,8 @@ def changed(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., set[str]]
         "config/archive.py", "cli/main.py", "cli/cache.py", "archive/pack.py", "archive/compare.py",
         "figures/style.py", "figures/phase_slope.py", "instrument/points.py",
         "instrument/point_store.py", "stages/progress.py", "stages/cost_estimate.py",
-        "datasets/catalog.py", "datasets/gallery.py", "schemes/table.py", "schemes/cost.py",
+        "datasets/catalog.py", "datasets/catalog_of_thesis.py", "datasets/gallery.py",
+        "schemes/table.py", "schemes/cost.py",
     ],
 )  # fmt: skip
 def test_what_no_number_follows_from_retraces_and_compiles_nothing(
@@ -82,7 +83,7 @@ def test_an_edit_of_the_scheme_paths_touches_no_run_by_counted_rays(
     found = changed(name)
     beside = {
         "stability", "tradeoff", "validity", "causes", "estimators", "calibration",
-        "action_potential",
+        "action_potential", "detector", "effects", "diffraction", "interferometers",
     }  # fmt: skip
     assert {one for one in found if one.startswith("vogel")} == {f"vogel {n}" for n in beside}
     assert {"paths detections", "paths focus_sweep", "paths focus_scan", "paths spectra"} <= found
@@ -100,6 +101,7 @@ def test_an_edit_of_a_stage_touches_that_stage_alone(changed: Callable[..., set[
         for stage in (
             "gaussian_fits", "focus_law", "detections", "spectra", "paths", "causes",
             "estimators", "calibration", "action_potential", "tradeoff", "design", "validity",
+            "detector", "effects",
         )
     }  # fmt: skip
 

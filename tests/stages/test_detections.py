@@ -1,5 +1,7 @@
 """The sweep over diameters: literal rays, one diameter after the other, where there is a focus."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -102,7 +104,7 @@ def test_a_combination_without_a_focus_law_is_nan_and_the_others_are_there() -> 
         every_stage(gridded({"focus_law.fraction.stop": [0.41, 0.42]}))
 
 
-EFFECTS = {
+EFFECTS: dict[str, dict[str, Any]] = {
     "dispersion": {"scene": {"refractive_index": {"neuron": {"cauchy": [1.3815, 0.004]}}}},
     "polarisation": {"polarisation": {"input": "30 deg", "analyser": "80 deg"}},
     "nothing": {},

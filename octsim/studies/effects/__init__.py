@@ -1,0 +1,1 @@
+"""What each effect that the thesis left out changes in a scene, and what it costs."""

@@ -1,0 +1,159 @@
+"""Overlays of a config that put an effect into it."""
+
+from collections.abc import Callable, Mapping
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from octsim.config.derive import nested
+from octsim.config.dispersion import moved
+from octsim.config.models import Config
+from octsim.config.units import format_length
+from octsim.optics.shipped_materials import SHIPPED
+
+Overlay = Mapping[str, Any]
+OverlayOf = Callable[[Config], Overlay | None]
+"""Returns what is laid over a config; None where its scene has no place for that."""
+
+CHROMATIC = 0.1
+"""By which the focus moves over the band, µm."""
+WIDER = 1.1
+"""How much larger the core of the fibre is, as a factor."""
+
+
+def always(key: str, value: object) -> OverlayOf:
+    """Give a key a value, whatever the config."""
+    return lambda _: nested(key, value)
+
+
+def dispersion(**materials: str) -> OverlayOf:
+    """Disperse media of a scene that are constant, each with its index at the middle of the band.
+
+    They are named by what they are in the scene: glass, water, neuron.
+    """
+
+    def overlay(config: Config) -> Overlay | None:
+        scene, k = config.scene, config.spectrum.middle
+        names = {
+            "glass": scene.objective_medium, "water": scene.host_medium,
+            "neuron": scene.swept_medium,
+        }  # fmt: skip
+        of = scene.refractive_index.of
+        laid = {
+            names[medium]: _dispersed(config, material, of[names[medium]].index(k).real)
+            for medium, material in materials.items()
+            if not of[names[medium]].dispersive
+        }
+        return nested("scene.refractive_index", laid) if laid else None
+
+    return overlay
+
+
+def _dispersed(config: Config, material: str, n: float) -> object:
+    """Return a material's index that is n at the middle of the band."""
+    if material != SOLUTION:
+        return moved(material, n, config.spectrum.middle)
+    # what is dissolved in water adds to its index, about the same at all wavelengths
+    band, water = config.spectrum.wavelength, SHIPPED["water"].material
+    wavelength = np.linspace(band.min - _STEP, band.max + _STEP, _ROWS)
+    index = [water.index(2 * pi / one).real for one in wavelength.tolist()]
+    by = n - water.index(config.spectrum.middle).real
+    # without the last digits, within which the ends of the band are
+    columns = {
+        "wavelength": [f"{one:.9f} um" for one in wavelength], "n": [one + by for one in index]
+    }  # fmt: skip
+    return {"table": columns}
+
+
+SOLUTION = "solution"
+"""Of a neuron: water whose index is raised by what is dissolved in it (Gladstone and Dale)."""
+_STEP, _ROWS = 0.001, 41  # µm beyond the band, and rows of a table
+
+
+def attenuation(per_cm: float, *, around: bool) -> OverlayOf:
+    """Attenuate light in what is swept, and around it if that is asked for."""
+
+    def overlay(config: Config) -> Overlay:
+        scene, taken = config.scene, config.scene.attenuation.of
+        names = (scene.swept_medium, *((scene.host_medium,) if around else ()))
+        total = {name: f"{taken.get(name, 0.0) + 1e-4 * per_cm:.12g} /um" for name in names}
+        return nested("scene.attenuation", total)
+
+    return overlay
+
+
+def zernike(number: int, rms: float, **objective: str) -> OverlayOf:
+    """Add an aberration by Noll's number, µm rms, with more keys of the objective."""
+
+    def overlay(config: Config) -> Overlay:
+        total = config.objective.zernike.of.get(number, 0.0) + rms
+        return {"objective": {"zernike": {str(number): format_length(total)}, **objective}}
+
+    return overlay
+
+
+def middle_wavelength(config: Config) -> str:
+    """Return the wavelength of the middle of the band, to a nanometre."""
+    return f"{2e3 * pi / config.spectrum.middle:.0f} nm"
+
+
+def chromatic(config: Config) -> Overlay:
+    """Let the focus be higher at longer wavelengths, by `CHROMATIC` over the band."""
+    band = config.spectrum.wavelength
+    linear = CHROMATIC / (band.max - band.min)
+    shift = {"reference": middle_wavelength(config), "linear": f"{linear:.12g} um/um"}
+    return nested("objective.focal_shift", shift)
+
+
+def rulings(waist: str, each: bool) -> OverlayOf:
+    """Make rays a Gaussian beam's rulings, of each wavelength or of that of mid-band."""
+
+    def overlay(config: Config) -> Overlay:
+        wavelength = "each" if each else middle_wavelength(config)
+        return {"beam": {"waist": waist, "wavelength": wavelength}}
+
+    return overlay
+
+
+def wider_core(config: Config) -> Overlay:
+    """Make the fibre's core wider."""
+    return nested("detector.core_diameter", format_length(WIDER * config.detector.core_diameter))
+
+
+def of_cylinder(**fields: object) -> OverlayOf:
+    """Change the cylinder that is swept."""
+
+    def overlay(config: Config) -> Overlay | None:
+        section, place = config.scene.swept[0].rsplit(".", 1)
+        return nested(f"{section}.{place}", fields) if section == "scene.cylinders" else None
+
+    return overlay
+
+
+def shell(medium: str, index: float, thickness: str) -> OverlayOf:
+    """Put a shell around the cylinder that is swept, of a medium that the config has not."""
+    shells = [{"medium": medium, "thickness": thickness}]
+
+    def overlay(config: Config) -> Overlay | None:
+        laid = of_cylinder(shells=shells)(config)
+        if laid is None or medium in config.scene.refractive_index.of:
+            return None
+        return {"scene": {**laid["scene"], "refractive_index": {medium: index}}}
+
+    return overlay
+
+
+def cover(config: Config) -> Overlay | None:
+    """Put a second slide above the water."""
+    scene = config.scene
+    if len(scene.layers) != 2 or not scene.cylinders:
+        return None
+    glass, water = scene.objective_medium, scene.host_medium
+    between = {"medium": water, "thickness": "5 um"}
+    return nested("scene.layers", [glass, between, glass])
+
+
+def polarised(state: object, analyser: object = None) -> OverlayOf:
+    """Polarise the light that goes in, and maybe what is detected."""
+    return always("polarisation", {"input": state, "analyser": analyser})

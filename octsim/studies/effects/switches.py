@@ -1,0 +1,50 @@
+"""Effects that a config has already, and what switches them off."""
+
+from collections.abc import Mapping
+
+from octsim.config.derive import nested
+from octsim.config.models import Config
+from octsim.studies.effects.overlays import Overlay, of_cylinder
+
+
+def is_on(config: Config, kind: str) -> bool:
+    """Return whether a config already has an effect of a kind."""
+    objective, scene = config.objective, config.scene
+    shift = objective.focal_shift
+    swept = next((one for one in scene.cylinders if one.diameter is None), None)
+    on = {
+        "dispersion": config.dispersive,
+        "attenuation": any(scene.attenuation.of.values()),
+        "polarisation": (config.polarisation.input, config.polarisation.analyser) != (None, None),
+        "zernike": bool(objective.zernike.of),
+        "focal shift": shift is not None and shift.moves,
+        "pupil": objective.pupil not in (None, "uniform"),
+        "apodisation": objective.apodisation is not None,
+        "falloff": config.detector.falloff != "parabolic",
+        "rulings": config.beam.waist is not None,
+        "scene": swept is not None
+        and bool(swept.x or swept.azimuth or swept.elevation or swept.shells),
+    }
+    return on.get(kind, False)
+
+
+def without(config: Config, kind: str) -> Overlay:
+    """Return what switches all effects of a kind off that a config has."""
+    scene, k = config.scene, config.spectrum.middle
+    of = scene.refractive_index.of
+    indices = {name: of[name].index(k).real for name in scene.media.values() if of[name].dispersive}
+    off: Mapping[str, Overlay] = {
+        "dispersion": nested("scene.refractive_index", indices),
+        "attenuation": nested("scene.attenuation", dict.fromkeys(scene.attenuation.of, "0 /um")),
+        "polarisation": nested("polarisation", {"input": None, "analyser": None}),
+        "zernike": nested(
+            "objective.zernike", {str(one): "0 nm" for one in config.objective.zernike.of}
+        ),
+        "focal shift": nested("objective.focal_shift", None),
+        "pupil": nested("objective.pupil", None),
+        "apodisation": nested("objective.apodisation", None),
+        "falloff": nested("detector.falloff", "parabolic"),
+        "rulings": nested("beam.waist", None),
+        "scene": of_cylinder(x="0 um", azimuth="0 deg", elevation="0 deg", shells=[])(config) or {},
+    }
+    return off[kind]
