@@ -69,7 +69,7 @@ OFF: list[dict[str, Any]] = [
 ]
 
 
-@pytest.mark.parametrize("effect", OFF, ids=lambda given: ', '.join(given))
+@pytest.mark.parametrize("effect", OFF, ids=lambda given: ", ".join(given))
 def test_an_effect_of_no_size_changes_nothing(effect: dict[str, Any]) -> None:
     assert intensity(Setup(**effect), BAND) == pytest.approx(intensity(Setup(), BAND), rel=1e-11)
 

@@ -56,6 +56,14 @@ def _media(scene: SceneConfig) -> Iterator[str]:
 def _indices(config: Config) -> Iterator[str]:
     """Say which dispersions of the scene are not known, or impossible, somewhere in the band."""
     given = dict(config.scene.refractive_index)
+    beam, around = config.beam, config.scene.objective_medium
+    known, one = span_of(given[around]) or (0.0, math.inf), beam.wavelength
+    if beam.waist is not None and isinstance(one, float) and not known[0] <= one <= known[1]:
+        yield (
+            f"beam.wavelength: {format_length(one)} given, but scene.refractive_index.{around} is "
+            f"known from {format_length(known[0])} to {format_length(known[1])}; give one within, "
+            "or each"
+        )
     ends = config.spectrum.wavelength
     shortest, longest = sorted((ends.min, ends.max))
     for medium in dict.fromkeys(config.scene.media.values()):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
-from octsim.optics.materials import Material
+from octsim.optics.materials import Material, intervals_within, rows_within
 
 
 class Symmetry(NamedTuple):
@@ -118,6 +118,19 @@ class Scene:
         """Every region once, that of the objective first."""
         sides = (region for surface in self.surfaces for region in surface.sides)
         return tuple(dict.fromkeys((self.objective, *sides)))
+
+    def rows_within(self, low: float, high: float) -> int:
+        """Return how many rows a table of any region has between two wavenumbers, 1/µm."""
+        return max(rows_within(region.material, low, high) for region in self.regions)
+
+    def intervals_within(self, low: float, high: float) -> float:
+        """Return how often the least distance of a table's rows is in a band, 1/µm."""
+        return max(intervals_within(region.material, low, high) for region in self.regions)
+
+    @property
+    def absorbs(self) -> bool:
+        """Whether the index of any region is complex."""
+        return any(region.material.absorbs for region in self.regions)
 
     @property
     def attenuates(self) -> bool:

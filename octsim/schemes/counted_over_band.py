@@ -27,6 +27,8 @@ from octsim.schemes.returned_rays import (
 from octsim.schemes.track_sums import Fields, Floats, Tracks, fields_of, summed, weights_of
 
 _NODES, _NODES_OF_PART = 9, 7
+_ROWS = 3
+"""Rows of a table in a part of the band, at most."""
 _CLOSE = 2e-10
 """Error of a ray's field by interpolation, over the largest field of one, that is close enough."""
 _FALL = 0.07  # of coefficients, from one to the next, at most
@@ -63,6 +65,9 @@ def _over_band(spiral: Spiral, k: Floats, only: NDArray[np.int64] | None, known:
     number = _NODES if only is None else _NODES_OF_PART
     if k.size <= number:
         return _one_by_one(spiral, k, only, known)
+    if spiral.scene.rows_within(k[0], k[-1]) > _ROWS:
+        # a table may turn between nodes that are too far apart to see it
+        return _joined([_over_band(spiral, part, only, known) for part in np.array_split(k, 2)])
     middle, half = (k[-1] + k[0]) / 2, (k[-1] - k[0]) / 2
     at = middle + half * chebyshev.chebpts1(number)
     traced = [_unknown(spiral.at(one, only), known) for one in at.tolist()]
@@ -72,13 +77,19 @@ def _over_band(spiral: Spiral, k: Floats, only: NDArray[np.int64] | None, known:
     if apart.size:
         now = known | frozenset(zip(tracks.ray.tolist(), tracks.path.tolist(), strict=True))
         halves = [_over_band(spiral, part, apart, now) for part in np.array_split(k, 2)]
-        values, rough = (
-            np.concatenate(both, axis=1) for both in list(zip(*halves, strict=True))[:2]
-        )
-        parts.append(Fields(values, rough, sum(one.segments for one in halves)))
+        parts.append(_joined(halves))
     return Fields(
         sum((one.values for one in parts[1:]), parts[0].values),
         sum((one.rough for one in parts[1:]), parts[0].rough),
+        sum(one.segments for one in parts),
+    )
+
+
+def _joined(parts: list[Fields]) -> Fields:
+    """Return fields of one part of a band after the other as those of all of it."""
+    return Fields(
+        np.concatenate([one.values for one in parts], axis=1),
+        np.concatenate([one.rough for one in parts], axis=1),
         sum(one.segments for one in parts),
     )
 

@@ -151,9 +151,11 @@ def attenuated(light: Light, scene: Scene, wavenumber: float) -> Light:
         return light
     taken = np.array([region.attenuation_at(wavenumber) for region in scene.regions])
     left = np.exp(-0.5 * (taken @ light.lengths))
+    # what is missing goes as far as what is there
     return light._replace(
-        amplitude=light.amplitude * left, rough_amplitude=light.rough_amplitude * left, lengths=None
-    )
+        amplitude=light.amplitude * left, rough_amplitude=light.rough_amplitude * left,
+        missing=light.missing * float(left.max(initial=0.0)), lengths=None,
+    )  # fmt: skip
 
 
 TERMS = ("plane", "near_side", "far_side")

@@ -58,7 +58,8 @@ def summed(spiral: Spiral, tracks: Tracks, k: Floats) -> Fields:
     turn = np.abs(lengths - _of_each(lengths, begin)).sum(axis=0).max(initial=0.0) * k[-1]
     # of e^(ix) over −turn … turn, as Bessel functions fall
     number = math.ceil(turn / k[-1] * half + 6 * turn ** (1 / 3) + 12)
-    if not tracks.ray.size or number > min(_MOST_NODES, k.size // 2):
+    # an absorption line can be narrower than nodes are apart
+    if spiral.scene.absorbs or not tracks.ray.size or number > min(_MOST_NODES, k.size // 2):
         return _at_each(spiral, tracks, k)
     inside, at_edge = _detected(spiral, tracks.at(chebyshev.chebpts1(number)))
     at_edges = _at_each(spiral, tracks.some(at_edge), k)

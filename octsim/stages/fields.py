@@ -15,6 +15,7 @@ from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.streams import Stream, Streamed
 from octsim.instrument.build import optics_of, scene_of
 from octsim.instrument.points import Points
+from octsim.optics.materials import Table
 from octsim.schemes.cost import MOST_WAVENUMBERS
 from octsim.schemes.fullwave.cylinder_on_plane import cylinder_on_plane
 from octsim.schemes.fullwave.orders import most_nodes
@@ -76,7 +77,8 @@ def _most_nodes(config: Config) -> int:
     """Return the most wavenumbers at which the field of any diameter is solved."""
     if scheme_of(config).light != "waves":
         return 1
-    if not config.scene.cylinders:
+    tables = any(isinstance(one, Table) for one in config.scene.refractive_index.of.values())
+    if tables or not config.scene.cylinders:
         return MOST_WAVENUMBERS
     largest = cylinder_on_plane(scene_of(config, config.sweep.diameters.stop))
     return most_nodes(largest, optics_of(config).band, config.tracing.accuracy)

@@ -66,7 +66,7 @@ def sharing(optics: Optics, options: Options, operators: Operators) -> LightAt:
         point = Point(
             numbers, optics.pupil, optics.numerical_aperture, height,
             place_at if optics.scene_varies or numbers.kappa else None,
-            wavefront_by(optics.effects.aberration, azimuth),
+            wavefront_by(optics.effects.aberration, azimuth), scene.intervals_within(*optics.band),
         )  # fmt: skip
         found = solve(point, optics.band, options["accuracy"], operators)
         return found._replace(azimuth=azimuth)

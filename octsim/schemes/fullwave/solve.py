@@ -1,5 +1,6 @@
 """The field of one point to an accuracy: solved, compared with itself, and solved better."""
 
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -7,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.optics.pupil import Pupil
+from octsim.schemes.cost import MOST_WAVENUMBERS
 from octsim.schemes.field_sum import relative_error
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 from octsim.schemes.fullwave.detection import collected, norm, plane_return
@@ -32,6 +34,8 @@ _LAST, _BEFORE = slice(-3, None), slice(-6, -3)
 """Chebyshev coefficients that tell of those left out."""
 
 _ROUNDING = 2e-14
+_NODES_EACH = 3
+"""Wavenumbers for the least distance of a table's rows, so that what turns there is seen."""
 """Error over the field's size below which more orders bring nothing."""
 
 
@@ -56,6 +60,8 @@ class Point(NamedTuple):
     """Returns scene and focus at a wavenumber, 1/µm, where they depend on it."""
     wavefront: Wavefront | None = None
     """Aberration of the pupil, in the frame of the cylinder."""
+    intervals: float = 0.0
+    """How often the least distance of a table's rows is in the band: an index may turn at each."""
 
 
 class Solved(NamedTuple):
@@ -147,6 +153,9 @@ def solve(point: Point, band: tuple[float, float], accuracy: float, operators: O
     orders = first_orders(scene, aperture, focus, band[1], accuracy)
     number = first_nodes(scene, aperture, focus, band, accuracy)
     most = most_nodes(scene, band, accuracy)
+    if point.intervals:
+        # beyond the most, nothing is solved, and the status says so
+        most, number = MOST_WAVENUMBERS, max(number, math.ceil(_NODES_EACH * point.intervals))
     removed = removed_path(scene, focus)
     best, checked, by_orders, spent, next_one = None, None, np.inf, 0.0, 0.0
     while orders.within_budget and number <= most and spent + next_one <= MOST_MULTIPLICATIONS:

@@ -27,6 +27,7 @@ CHECKS = 40
 """How many there are in a survey."""
 _ALONG_X = 24  # of them at y = 0, of a scene that is symmetric in x
 _BESIDE = 4.0  # R_det from the focus
+_AT_EDGE = 0.1  # of a falloff that jumps there, in the square of the distance
 _NEAR = 1e-8  # to an edge, of the tile's width
 _EVENED_OUT = 0.1  # error of an integral, over the largest of its integrand
 
@@ -119,7 +120,8 @@ def weight_error(checks: CheckRays, cut: Cut, line: TileLine) -> float:
         to_x, to_y = to_x * across_place(cut, xi, y), to_y * y
         weight = max(weight_of(to_x, to_y, cos, inside, cut.detector_radius, cut.falloff), 0.0)
         # at the rim the falloff may jump, and at its own edge: that is those edges' error
-        at_edge = cut.falloff.edge * checks.weight[i] == 0 and cut.falloff.edge > 0
+        squared = (to_x * to_x + to_y * to_y) / (cut.detector_radius * cos) ** 2
+        at_edge = cut.falloff.edge > 0 and abs(squared - 1) < _AT_EDGE
         if not at_edge and (abs(inside) > 1e-3 * cos * cos or weight == 0):
             worst = max(worst, abs(weight - checks.weight[i]))
     return _EVENED_OUT * worst

@@ -74,10 +74,11 @@ def light_of_paths(
             light.path, light.amplitude, light.rough_amplitude, light.optical_path_length,
             light.missing, optics.wavenumber, asked,
         )  # fmt: skip
-        if relative_error(float(np.abs(found.values).max(initial=0.0)), found.error) <= accuracy:
+        error = relative_error(float(np.abs(found.values).max(initial=0.0)), found.error)
+        if error <= accuracy:
             break
         asked *= _BETTER
-    return light
+    return light._replace(status=_worst([light.status], error, accuracy))
 
 
 def sampled_paths(
@@ -127,6 +128,9 @@ def _over_band(
         each = [_node(point, one, accuracy) for one in k.tolist()]
         values = np.stack([one.fields.sum(axis=1) for one in each], axis=1)
         return values, [one.error for one in each], [one.light for one in each]
+    if point.scene.rows_within(k[0], k[-1]):
+        # a table turns at its rows, maybe between nodes that are too far apart to see it
+        return _in_halves(point, k, accuracy, scale)
     middle, half = (k[-1] + k[0]) / 2, (k[-1] - k[0]) / 2
     at = middle + half * chebyshev.chebpts1(number)
     each = [_node(point, one, accuracy) for one in at.tolist()]
@@ -135,13 +139,21 @@ def _over_band(
     left = _left_out(np.abs(slow))
     scale = max(scale, *(_size(one) for one in each))
     if relative_error(scale, left) > accuracy:
-        found = [_over_band(point, part, accuracy, scale) for part in np.array_split(k, 2)]
-        values = np.concatenate([one[0] for one in found], axis=1)
-        return values, found[0][1] + found[1][1], lights + found[0][2] + found[1][2]
+        values, errors, more = _in_halves(point, k, accuracy, scale)
+        return values, errors, lights + more
     place = np.linspace(-1, 1, k.size)
     turned = np.exp(1j * chebyshev.chebval(place, phase))
     values = (chebyshev.chebval(place, slow) * turned).sum(axis=1)
     return values, [left + max(one.error for one in each)], lights
+
+
+def _in_halves(
+    point: _Point, k: NDArray[np.float64], accuracy: float, scale: float
+) -> tuple[NDArray[np.complex128], list[float], list[Light]]:
+    """Return what `_over_band` does, of one half of the band and then of the other."""
+    first, second = (_over_band(point, part, accuracy, scale) for part in np.array_split(k, 2))
+    values = np.concatenate((first[0], second[0]), axis=1)
+    return values, first[1] + second[1], first[2] + second[2]
 
 
 def _left_out(sizes: NDArray[np.float64]) -> float:
