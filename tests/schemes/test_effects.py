@@ -164,3 +164,26 @@ def test_a_tilted_wavefront_moves_the_focus_of_waves_sideways(offset: float) -> 
     )
     found, expected = (one.spectrum(DIAMETER, FOCUS).intensity for one in (tilted, moved))
     assert np.abs(found - expected).max() <= 2e-8 * expected.max()
+
+
+@pytest.mark.parametrize("width", [0.003, 0.02])
+def test_an_absorption_line_is_seen_however_narrow(width: float) -> None:
+    line = [0.6, 0.777 - width, 0.777, 0.777 + width, 1.0]
+    table = {"table": {"wavelength": line, "n": [1.39] * 5, "kappa": [0, 0, 0.05, 0, 0]}}
+    few = {"spectrum": {"samples": 400}, "tracing": {"rays": 300}}
+    overlay = {"scene": {"refractive_index": {"neuron": table}}}
+    found = Instrument(load_config(few, overlay))
+    sample = int(np.abs(found.wavenumber - 2 * np.pi / 0.777).argmin())
+    k = float(found.wavenumber[sample])
+    taken = 2 * k * found.config.swept_material.index(k).imag
+    constant = {"scene": {"attenuation": {"neuron": f"{taken!r} 1/um"}}}
+    expected = Instrument(load_config(few, constant)).spectrum(DIAMETER, FOCUS).intensity
+    spectrum = found.spectrum(DIAMETER, FOCUS).intensity
+    assert abs(spectrum[sample] - expected[sample]) <= 1e-10 * expected.max()
+
+
+def test_of_light_that_glass_takes_the_error_is_that_of_what_is_left() -> None:
+    overlay = {"scene": {"attenuation": {"glass": "300 /cm"}}}
+    found = instrument("paths", overlay, accuracy=1e-4).spectrum(DIAMETER, FOCUS)
+    assert found.status == AccuracyStatus.REACHED
+    assert found.error <= 3e-4
