@@ -57,8 +57,9 @@ def effects_figure(table: xr.Dataset) -> Figure:
 
 
 def _colours(shown: xr.Dataset) -> list[str]:
-    """Return vermilion for what is needed, grey for what is not resolved."""
-    needed, resolved = shown["needed"].values, shown["resolved"].values
+    """Return vermilion for what is needed, grey for what is not told from the noise."""
+    needed = shown["needed"].values == 1
+    resolved = (shown["resolved"].values == 1) & (shown["undecided"].values == 0)
     return [
         VERMILION if must else BLUE if known else _GREY
         for must, known in zip(needed, resolved, strict=True)
@@ -116,7 +117,7 @@ def _legend(figure: Figure, table: xr.Dataset) -> None:
     patches = [
         Patch(color=VERMILION, label=f"needed: above {mean} (line), or {local} anywhere (dashed)"),
         Patch(color=BLUE, label="may stay off"),
-        Patch(color=_GREY, label="mean not resolved"),
+        Patch(color=_GREY, label="not told from the noise"),
         *([Patch(color=GREEN, label="a pair")] if table.sizes["pair"] else []),
     ]
     figure.legend(handles=[*patches, *drawn], loc="outside lower center", ncols=3, fontsize=8)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from octsim.config.derive import nested
-from octsim.config.dispersion import moved
+from octsim.config.dispersion import CauchyIndex, moved
 from octsim.config.models import Config
 from octsim.config.units import format_length
 from octsim.optics.shipped_materials import SHIPPED
@@ -52,23 +52,26 @@ def dispersion(**materials: str) -> OverlayOf:
 
 def _dispersed(config: Config, material: str, n: float) -> object:
     """Return a material's index that is n at the middle of the band."""
-    if material != SOLUTION:
-        return moved(material, n, config.spectrum.middle)
-    # what is dissolved in water adds to its index, about the same at all wavelengths
+    index = _solution(config) if material == SOLUTION else material
+    return moved(index, n, config.spectrum.middle)
+
+
+def _solution(config: Config) -> CauchyIndex:
+    """Return water by Cauchy's formula, to 1e-6 in the band.
+
+    What is dissolved in it adds to its index about the same at all wavelengths (Gladstone and
+    Dale), and `moved` does so to this form of it.
+    """
     band, water = config.spectrum.wavelength, SHIPPED["water"].material
-    wavelength = np.linspace(band.min - _STEP, band.max + _STEP, _ROWS)
+    wavelength = np.linspace(band.min, band.max, _FITTED)
     index = [water.index(2 * pi / one).real for one in wavelength.tolist()]
-    by = n - water.index(config.spectrum.middle).real
-    # without the last digits, within which the ends of the band are
-    columns = {
-        "wavelength": [f"{one:.9f} um" for one in wavelength], "n": [one + by for one in index]
-    }  # fmt: skip
-    return {"table": columns}
+    terms = np.polynomial.Polynomial.fit(wavelength**-2, index, _DEGREE).convert().coef
+    return CauchyIndex(cauchy=tuple(terms.tolist()))
 
 
 SOLUTION = "solution"
-"""Of a neuron: water whose index is raised by what is dissolved in it (Gladstone and Dale)."""
-_STEP, _ROWS = 0.001, 41  # µm beyond the band, and rows of a table
+"""Of a neuron: water whose index is raised by what is dissolved in it."""
+_FITTED, _DEGREE = 41, 4  # wavelengths, and the power of 1/λ²
 
 
 def attenuation(per_cm: float, *, around: bool) -> OverlayOf:
