@@ -17,8 +17,7 @@ Array = NDArray[np.float64]
 MEAN_TOLERANCE = 0.0025
 """Of the mean slope, relative: an effect that moves it by more is needed.
 
-A third of what a calibration is known to at its default tolerances, so that what is left out counts
-little beside that.
+Chosen, not derived: no key of the config states an accuracy of a calibration.
 """
 LOCAL_TOLERANCE = 0.01
 """Of the slope at any one diameter, relative to the mean slope."""
