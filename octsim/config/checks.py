@@ -93,7 +93,7 @@ def impossible(config: Config) -> Iterator[str]:
     key, focus = highest_focus(config)
     distance = config.objective.focus_distance
     if shift := config.objective.focal_shift:
-        focus += shift.highest(*sorted((band.min, band.max)))
+        focus += shift.formula.highest(*sorted((band.min, band.max)))
     if not distance > focus:
         yield (
             f"objective.focus_distance: {format_length(distance)} given; it must exceed every "

@@ -17,6 +17,7 @@ from octsim.config.units import (
     parse_length,
     schema_of,
 )
+from octsim.optics import focal_shift as shifts
 from octsim.optics.zernike import MOST, NAMES
 
 ZERNIKE_FORM = (
@@ -92,16 +93,10 @@ class FocalShiftConfig(Section):
         """Whether it is not zero at all wavelengths."""
         return bool(self.linear or self.quadratic)
 
-    def at(self, wavelength: float) -> float:
-        """Return by how much the focus is higher at a wavelength, both µm."""
-        off = wavelength - self.reference
-        return (self.linear + self.quadratic * off) * off
-
-    def highest(self, shortest: float, longest: float) -> float:
-        """Return by how much the focus is higher in a band at most, all µm."""
-        turn = self.reference - self.linear / (2 * self.quadratic) if self.quadratic else shortest
-        ends = shortest, longest, min(max(turn, shortest), longest)
-        return max(map(self.at, ends))
+    @property
+    def formula(self) -> shifts.FocalShift:
+        """What it is at each wavelength."""
+        return shifts.FocalShift(self.reference, self.linear, self.quadratic)
 
 
 FocalShift = Annotated[FocalShiftConfig | None, BeforeValidator(absent)]

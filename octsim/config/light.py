@@ -128,3 +128,8 @@ class PolarisationConfig(Section):
         _Written,
         WithJsonSchema({"anyOf": [_ANGLE, _NOTHING]}),
     ] = _key(None, "angle of one for the returned light, as 30 deg; null or none is none")
+
+    @property
+    def given(self) -> bool:
+        """Whether either is given, so that light has a polarisation by any scheme."""
+        return self.input is not None or self.analyser is not None

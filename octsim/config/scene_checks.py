@@ -238,9 +238,8 @@ def scene_remarks(config: Config) -> Iterator[str]:
             yield _met(config, key, cylinder)
     yield from _aberration_remarks(config)
     aperture, index = config.objective.numerical_aperture, config.host_index
-    given, rays = config.polarisation, SCHEMES[config.tracing.scheme].light == "rays"
-    split = rays and given.input is None and given.analyser is None
-    if index < aperture and split:
+    rays = SCHEMES[config.tracing.scheme].light == "rays"
+    if index < aperture and rays and not config.polarisation.given:
         yield (
             f"objective.numerical_aperture: {aperture} is above the index of {scene.host_medium}, "
             f"{index}, with polarisation.input: none: the thesis's split makes light off the plane "

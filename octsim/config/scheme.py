@@ -25,9 +25,8 @@ def sampled(config: Config) -> bool:
 
     Such rays differ from wavenumber to wavenumber, or they have a polarisation.
     """
-    polarised = (config.polarisation.input, config.polarisation.analyser) != (None, None)
     weighed = config.detector.falloff == "fibre" or isinstance(config.pupil, FibreMode)
-    each = polarised or weighed or way_varies(config)
+    each = config.polarisation.given or weighed or way_varies(config)
     return scheme_of(config).light == "rays" and each
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import octsim.optics.shipped_materials  # noqa: F401  what a name in a config stands for
 from octsim.optics.detector import Detector, fibre_detector
-from octsim.optics.effects import Effects, FocalShift, ReferenceArm, Waist
+from octsim.optics.effects import Effects, ReferenceArm, Waist
 from octsim.optics.falloff import (
     Cosine,
     Falloff,
@@ -144,17 +144,14 @@ def effects_of(config: Config) -> Effects:
     objective, shift = config.objective, config.objective.focal_shift
     terms = tuple(objective.zernike.of.items())
     reference = config.interferometer.reference
-    given = config.polarisation
     return Effects(
         aplanatic=objective.apodisation == "aplanatic",
         aberration=Aberration(terms) if terms else None,
         turned=not terms or objective.zernike_rays == "normal",
-        focal_shift=FocalShift(shift.reference, shift.linear, shift.quadratic)
-        if shift is not None and shift.moves
-        else None,
+        focal_shift=shift.formula if shift is not None and shift.moves else None,
         falloff=falloff_of(config),
         waist=waist_of(config),
-        vectorial=given.input is not None or given.analyser is not None,
+        vectorial=config.polarisation.given,
         reference=ReferenceArm(reference.amplitude, reference.length) if reference else None,
     )
 

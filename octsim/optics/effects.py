@@ -3,32 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import pi
 from typing import TYPE_CHECKING
 
 from octsim.optics.falloff import Falloff, Parabolic
+from octsim.optics.focal_shift import FocalShift
 from octsim.optics.rulings import diffraction_waist, rayleigh_range
 
 if TYPE_CHECKING:
     from octsim.optics.materials import Material
     from octsim.optics.zernike import Aberration
-
-
-@dataclass(frozen=True)
-class FocalShift:
-    r"""A focus whose height depends on the wavelength: :math:`a (λ - λ_0) + b (λ - λ_0)^2`."""
-
-    reference: float
-    """λ₀, µm, in vacuum as all wavelengths."""
-    linear: float
-    """a, µm/µm."""
-    quadratic: float
-    """b, 1/µm."""
-
-    def at(self, wavenumber: float) -> float:
-        """Return by how much the focus is higher at a wavenumber (1/µm), µm."""
-        off = 2 * pi / wavenumber - self.reference
-        return (self.linear + self.quadratic * off) * off
 
 
 @dataclass(frozen=True)

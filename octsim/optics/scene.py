@@ -5,6 +5,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from octsim.optics.materials import Material, intervals_within, rows_within
 
 
@@ -137,6 +140,27 @@ class Scene:
         """Whether any region takes light away."""
         sides = (region for surface in self.surfaces for region in surface.sides)
         return self.objective.attenuates or any(region.attenuates for region in sides)
+
+    def transmission(
+        self, ways: NDArray[np.float64], wavenumber: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        r"""Return what is left of amplitudes that the regions take from, (K, D).
+
+        .. math:: e^{-\frac12 \sum_r \mu_r L_r}
+
+        (Beer and Lambert; attenuation is of intensity).
+
+        Parameters
+        ----------
+        ways : ndarray, shape (R, K, D)
+            Lengths in each region, µm; of one K that serves all wavenumbers, too.
+        wavenumber : ndarray, shape (K,)
+            1/µm.
+        """
+        k = wavenumber.tolist()
+        taken = np.array([[region.attenuation_at(one) for one in k] for region in self.regions])
+        left: NDArray[np.float64] = np.exp(-0.5 * (taken[..., np.newaxis] * ways).sum(axis=0))
+        return left
 
     @property
     def surface_names(self) -> tuple[str, ...]:

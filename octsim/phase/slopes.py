@@ -71,6 +71,14 @@ def slope_of(diameter: NDArray[np.float64], phase: NDArray[np.float64]) -> NDArr
     return gradient(phase_steps(phase), diameter)
 
 
+def line_slope(diameter: NDArray[np.float64], phase: NDArray[np.float64]) -> float:
+    """Return the slope of the line through phases (D,) by least squares; NaN ones are left out."""
+    known = np.isfinite(phase)
+    if known.sum() < 2:
+        return np.nan
+    return float(np.polyfit(diameter[known], phase[known], 1)[0])
+
+
 def trend(diameter: NDArray[np.float64], slope: NDArray[np.float64]) -> NDArray[np.float64]:
     """Fit a polynomial of the fourth degree over the diameter to slopes by least squares, (D,)."""
     degree = min(_DEGREE, slope.size - 1)

@@ -8,11 +8,11 @@ wavenumbers is traced.
 """
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from octsim.optics.detector import RIM, Outcome
 from octsim.optics.scene import Scene
+from octsim.schemes.band_nodes import nodes_within, to_coefficients
 from octsim.schemes.light import AccuracyStatus, Light, Optics, Options, Sampled
 from octsim.schemes.returned_rays import (
     FIRST_FIELD,
@@ -68,8 +68,7 @@ def _over_band(spiral: Spiral, k: Floats, only: NDArray[np.int64] | None, known:
     if spiral.scene.rows_within(k[0], k[-1]) > _ROWS:
         # a table may turn between nodes that are too far apart to see it
         return _joined([_over_band(spiral, part, only, known) for part in np.array_split(k, 2)])
-    middle, half = (k[-1] + k[0]) / 2, (k[-1] - k[0]) / 2
-    at = middle + half * chebyshev.chebpts1(number)
+    at = nodes_within(k[0], k[-1], number)
     traced = [_unknown(spiral.at(one, only), known) for one in at.tolist()]
     tracks, apart = _tracks(spiral, traced, k[-1])
     whole = summed(spiral, tracks, k)
@@ -146,10 +145,7 @@ def _tracks(
     numbers, pairs = whole[..., throughout], every[throughout]
     possible = _possible(spiral, numbers)
     numbers, pairs = numbers[..., possible], pairs[possible]
-    to_coefficients = np.linalg.inv(
-        chebyshev.chebvander(chebyshev.chebpts1(len(traced)), len(traced) - 1)
-    )
-    coefficients = to_coefficients @ numbers
+    coefficients = to_coefficients(len(traced)) @ numbers
     close = _close(spiral, numbers, coefficients, largest_k)
     return (
         Tracks(pairs[close, 0], pairs[close, 1], coefficients[..., close]),

@@ -141,16 +141,10 @@ class Waves(NamedTuple):
 
 
 def attenuated(light: Light, scene: Scene, wavenumber: float) -> Light:
-    r"""Return light without what the regions of its scene take of it, at a wavenumber, 1/µm.
-
-    .. math:: E \to E\, e^{-\frac12 \sum_r \mu_r L_r}
-
-    (Beer and Lambert, of intensity), with the lengths of the way in each region.
-    """
+    """Return light without what the regions of its scene take of it, at a wavenumber, 1/µm."""
     if light.lengths is None:
         return light
-    taken = np.array([region.attenuation_at(wavenumber) for region in scene.regions])
-    left = np.exp(-0.5 * (taken @ light.lengths))
+    (left,) = scene.transmission(light.lengths[:, np.newaxis], np.array([wavenumber]))
     # what is missing goes as far as what is there
     return light._replace(
         amplitude=light.amplitude * left, rough_amplitude=light.rough_amplitude * left,

@@ -18,6 +18,7 @@ from octsim.optics.rulings import rulings
 from octsim.optics.scene import Scene
 from octsim.optics.turned_rays import displacement
 from octsim.schemes.light import Optics, Options
+from octsim.schemes.through_objective import passed
 from octsim.tracing.carry import AMPLITUDE
 from octsim.tracing.jones import FIELD, jones_of
 from octsim.tracing.kernel import make_tree
@@ -146,25 +147,18 @@ class Spiral:
     ) -> Returned:
         optics, effects = self.optics, self.optics.effects
         over = self.index(wavenumber) / optics.numerical_aperture
-        vx, vy, cos_in = beam.vx[found.ray], beam.vy[found.ray], beam.vz[found.ray]
-        cos_out = np.sqrt(1 - found.vx**2 - found.vy**2)
-        far = detector.focus_distance / cos_out
-        x, y, length = found.x, found.y, found.optical_path_length
+        vx, vy = beam.vx[found.ray], beam.vy[found.ray]
+        through = passed(optics, self.index(wavenumber), (vx, vy), (found.vx, found.vy))
+        x, y, length = found.x, found.y, found.optical_path_length + through.path
         if effects.aberration and effects.turned:
             to_fibre = detector.magnification, detector.focal_length
             across, along, path = _turned(optics, over * found.vx, over * found.vy)
             length = length + path - lens_correction(x * x + y * y, *to_fibre)
             x, y = x - across, y - along
             length += lens_correction(x * x + y * y, *to_fibre)
-        elif effects.aberration:
-            length = (
-                length + effects.aberration.wavefront(-over * vx, -over * vy)
-                + effects.aberration.wavefront(over * found.vx, over * found.vy)
-            )  # fmt: skip
+        far = detector.focus_distance / np.sqrt(1 - found.vx**2 - found.vy**2)
         rim = np.hypot(x + far * found.vx, y + far * found.vy)
-        amplitude = beam.amplitude[found.ray]
-        if effects.aplanatic:
-            amplitude = amplitude * np.sqrt(cos_in / cos_out)
+        amplitude = beam.amplitude[found.ray] * through.factor
         regions = len(self.scene.regions) if self.lengths else 0
         carried = found.carried[: len(found.carried) - regions]
         if effects.vectorial:
@@ -173,8 +167,7 @@ class Spiral:
         ways = found.carried[len(found.carried) - regions :]
         if regions:
             ways = ways.copy()
-            # those of the glass on both sides of the focal plane
-            ways[0] += detector.focus_distance / cos_in + far
+            ways[0] += through.in_glass
         numbers = (
             x, y, (rim / detector.objective_radius) ** 2, length, over * np.hypot(vx, vy),
             *(amplitude * carried), *ways,

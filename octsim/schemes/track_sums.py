@@ -13,6 +13,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from octsim.optics.detector import RIM
+from octsim.schemes.band_nodes import nodes_within, to_coefficients
 from octsim.schemes.returned_rays import FIRST_FIELD, LENGTH, RIM_SQUARED, Spiral, X, Y, weights
 
 _AT_ONCE = 2_000_000  # numbers
@@ -21,7 +22,7 @@ _MOST_NODES = 100
 """At which fields are summed, before they are summed at every wavenumber."""
 
 Floats = NDArray[np.float64]
-Fields_ = NDArray[np.complex128]
+Complexes = NDArray[np.complex128]
 
 
 class Tracks(NamedTuple):
@@ -44,8 +45,8 @@ class Tracks(NamedTuple):
 class Fields(NamedTuple):
     """Fields of rays at wavenumbers (C, K), those by a rougher rule, and segments traced."""
 
-    values: Fields_
-    rough: Fields_
+    values: Complexes
+    rough: Complexes
     segments: int
 
 
@@ -102,15 +103,14 @@ def _by_nodes(spiral: Spiral, tracks: Tracks, k: Floats, number: int) -> Fields:
         return _at_each(spiral, tracks, k)
     begin = np.flatnonzero(np.diff(tracks.path, prepend=-1))
     place, to = chebyshev.chebpts1(number), np.linspace(-1, 1, k.size)
-    at = (k[-1] + k[0]) / 2 + (k[-1] - k[0]) / 2 * place
+    at = nodes_within(k[0], k[-1], number)
     counts = np.diff(begin, append=tracks.ray.size)
     mean = np.add.reduceat(tracks.coefficients[LENGTH], begin, axis=-1) / counts
     slow = np.array(tracks.at(place))
     slow[LENGTH] -= np.repeat(chebyshev.chebvander(place, len(mean) - 1) @ mean, counts, axis=-1)
     parts, even = _parts(spiral, tracks.ray, slow, at)
     sums = np.stack([np.add.reduceat(parts * one, begin, axis=-1) for one in (1.0, 2.0 * even)])
-    to_coefficients = np.linalg.inv(chebyshev.chebvander(place, number - 1))
-    there = chebyshev.chebvander(to, number - 1) @ (to_coefficients @ sums)
+    there = chebyshev.chebvander(to, number - 1) @ (to_coefficients(number) @ sums)
     phase = k[:, np.newaxis] * (chebyshev.chebvander(to, len(mean) - 1) @ mean)
     values, rough = (there * (np.cos(phase) + 1j * np.sin(phase))).sum(axis=-1)
     return Fields(values, rough, 0)
@@ -128,7 +128,7 @@ def _at_each(spiral: Spiral, tracks: Tracks, k: Floats) -> Fields:
 
 def fields_of(
     spiral: Spiral, ray: NDArray[np.int64], numbers: Floats, k: Floats
-) -> tuple[Fields_, Fields_]:
+) -> tuple[Complexes, Complexes]:
     """Return the detected fields (C, K) of rays with numbers (Q, K, D), and by a rougher rule."""
     parts, even = _parts(spiral, ray, numbers, k)
     return parts.sum(axis=-1), 2 * parts[..., even].sum(axis=-1)
@@ -136,7 +136,7 @@ def fields_of(
 
 def _parts(
     spiral: Spiral, ray: NDArray[np.int64], numbers: Floats, k: Floats
-) -> tuple[Fields_, NDArray[np.bool_]]:
+) -> tuple[Complexes, NDArray[np.bool_]]:
     """Return what each ray has in the detected fields, (C, K, D), and which the rougher rule has.
 
     Every second ray is a spiral of half the rays.
@@ -154,7 +154,6 @@ def weights_of(spiral: Spiral, numbers: Floats, k: Floats) -> Floats:
     """Return what weighs rays with numbers (Q, K, D): pupil, detector, and what regions take."""
     weight = weights(spiral.optics, numbers, k)
     if spiral.lengths:
-        ways, regions = numbers[FIRST_FIELD + spiral.parts :], spiral.scene.regions
-        taken = np.array([[one.attenuation_at(at) for at in k.tolist()] for one in regions])
-        weight = weight * np.exp(-0.5 * (taken[..., np.newaxis] * ways).sum(axis=0))
+        ways = numbers[FIRST_FIELD + spiral.parts :]
+        weight = weight * spiral.scene.transmission(ways, k)
     return weight

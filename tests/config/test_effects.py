@@ -81,11 +81,13 @@ def test_a_focal_shift_is_a_parabola_in_the_wavelength() -> None:
     shift = checked(EVERY).objective.focal_shift
     assert isinstance(shift, FocalShiftConfig)
     assert (shift.linear, shift.quadratic, shift.moves) == (0.4, -0.2, True)
-    assert shift.at(0.755) == 0.0
-    assert shift.at(0.855) == pytest.approx(0.04 - 0.002)
-    assert shift.highest(0.65, 0.9) == shift.at(0.9)
+    assert shift.formula.at_wavelength(0.755) == 0.0
+    assert shift.formula.at_wavelength(0.855) == pytest.approx(0.04 - 0.002)
+    assert shift.formula.highest(0.65, 0.9) == shift.formula.at_wavelength(0.9)
     steep = shift.model_copy(update={"quadratic": -4.0})
-    assert steep.highest(0.65, 0.9) == pytest.approx(steep.at(0.755 + 0.05))
+    assert steep.formula.highest(0.65, 0.9) == pytest.approx(
+        steep.formula.at_wavelength(0.755 + 0.05)
+    )
     alone = checked({"objective": {"focal_shift": {"reference": "755 nm"}}}).objective.focal_shift
     assert alone is not None
     assert not alone.moves

@@ -11,6 +11,8 @@ from literal_effects import Setup, intensity
 from octsim.config.abilities import asked_of_scheme
 from octsim.config.derive import merge
 from octsim.config.load import load_config
+from octsim.config.scheme import sampled, way_varies
+from octsim.instrument.build import optics_of
 from octsim.instrument.instrument import Instrument
 from octsim.optics.zernike import Aberration
 from octsim.schemes.light import AccuracyStatus
@@ -187,3 +189,11 @@ def test_of_light_that_glass_takes_the_error_is_that_of_what_is_left() -> None:
     found = instrument("paths", overlay, accuracy=1e-4).spectrum(DIAMETER, FOCUS)
     assert found.status == AccuracyStatus.REACHED
     assert found.error <= 3e-4
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_a_config_knows_what_its_optics_do_with_the_wavenumber(name: str) -> None:
+    config = instrument("vogel", EVERY[name].overlay).config
+    optics = optics_of(config)
+    assert sampled(config) == optics.sampled
+    assert way_varies(config) == optics.way_varies

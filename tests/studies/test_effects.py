@@ -115,7 +115,9 @@ def test_an_effect_is_one_overlay_and_leaves_the_index_of_mid_band() -> None:
         assert material.index(k).real == pytest.approx(index, abs=1e-12)
     shift = found["chromatic focal shift 100 nm"].with_effect.objective.focal_shift
     assert shift is not None
-    assert shift.at(0.9) - shift.at(0.65) == pytest.approx(0.1)
+    assert shift.formula.at_wavelength(0.9) - shift.formula.at_wavelength(0.65) == pytest.approx(
+        0.1
+    )
     assert found["focus +50 nm"].focus == 0.05
     assert found["focus +50 nm"].with_effect == config
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from octsim.optics.polarisation import jones_rows
 from octsim.optics.scene import Scene
+from octsim.schemes.band_nodes import nodes_within, to_coefficients
 from octsim.schemes.field_sum import relative_error
 from octsim.schemes.light import AccuracyStatus, Light, Optics, Sampled, attenuated
 from octsim.schemes.paths.path_sum import field_of_paths
@@ -131,8 +132,7 @@ def _over_band(
     if point.scene.rows_within(k[0], k[-1]):
         # a table turns at its rows, maybe between nodes that are too far apart to see it
         return _in_halves(point, k, accuracy, scale)
-    middle, half = (k[-1] + k[0]) / 2, (k[-1] - k[0]) / 2
-    at = middle + half * chebyshev.chebpts1(number)
+    at = nodes_within(k[0], k[-1], number)
     each = [_node(point, one, accuracy) for one in at.tolist()]
     lights = [one.light for one in each]
     phase, slow = _coefficients(each)
@@ -233,8 +233,7 @@ def _coefficients(
     phase = chebyshev.chebfit(place, k[:, np.newaxis] * length, _PHASE_DEGREE)
     turned = np.exp(-1j * chebyshev.chebval(place, phase)).T
     slow = fields * turned[:, np.newaxis]
-    to_coefficients = np.linalg.inv(chebyshev.chebvander(place, len(each) - 1))
-    return phase, np.tensordot(to_coefficients, slow, axes=1)
+    return phase, np.tensordot(to_coefficients(len(each)), slow, axes=1)
 
 
 def _rows(optics: Optics, found: Weighed) -> NDArray[np.complex128]:

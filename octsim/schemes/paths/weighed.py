@@ -16,6 +16,7 @@ from octsim.optics.turned_rays import STRAIGHT, Straight, Turning, through_lens,
 from octsim.schemes.light import Light, Optics
 from octsim.schemes.paths.falloffs import series_of
 from octsim.schemes.paths.integrate import EVEN, Integrated, integrate_nodes
+from octsim.schemes.through_objective import passed
 from octsim.tracing.carry import AMPLITUDE
 from octsim.tracing.jones import FIELD, jones_of
 from octsim.tracing.kernel import AT_VX, AT_VY, FIRST_CARRIED
@@ -103,18 +104,10 @@ def weighed(optics: Optics, scene: Scene, found: Followed, k: float) -> Weighed:
     """Weigh the rays of a point at a wavenumber of their band, 1/µm."""
     (light, _, (vx, vy, carried)), numbers, regions = found
     effects, aperture = optics.effects, optics.numerical_aperture
-    over = scene.objective.material.index(k).real / aperture
-    out_x, out_y = numbers[AT_VX], numbers[AT_VY]
-    cos_in, cos_out = (
-        np.sqrt(np.maximum(1 - x * x - y * y, 0.0)) for x, y in ((vx, vy), (out_x, out_y))
-    )
-    factor = optics.pupil.amplitude(over * aperture * np.hypot(vx, vy), aperture, k)
-    if effects.aplanatic:
-        factor = factor * np.sqrt(cos_in / cos_out)
-    length = light.optical_path_length
-    if effects.aberration and not effects.turned:
-        wavefront = effects.aberration.wavefront
-        length = length + wavefront(-over * vx, -over * vy) + wavefront(over * out_x, over * out_y)
+    index, (out_x, out_y) = scene.objective.material.index(k).real, numbers[[AT_VX, AT_VY]]
+    through = passed(optics, index, (vx, vy), (out_x, out_y))
+    pupil = optics.pupil.amplitude(index * np.hypot(vx, vy), aperture, k)
+    factor, length = pupil * through.factor, light.optical_path_length + through.path
     end = len(numbers) - regions
     fields = np.ones((2, light.path.size), np.complex128)
     if effects.vectorial:
@@ -124,8 +117,7 @@ def weighed(optics: Optics, scene: Scene, found: Followed, k: float) -> Weighed:
         fields = np.where(there, [jones[:, 0, 0], jones[:, 1, 1]] / np.where(there, carried, 1), 0)
     ways = numbers[end:].copy() if regions else None
     if ways is not None:
-        # the ways in the glass are from the objective's plane, and back to it
-        ways[0] += optics.detector.focus_distance * (1 / cos_in + 1 / cos_out)
+        ways[0] += through.in_glass
     most = float(np.abs(factor).max(initial=0.0) * np.abs(fields).max(initial=0.0))
     return Weighed(
         light._replace(

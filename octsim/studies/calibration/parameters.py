@@ -123,8 +123,7 @@ def _is_filled(config: Config) -> bool:
 
 
 def _is_polarised(config: Config) -> bool:
-    given = config.polarisation
-    return _of_waves(config) or given.input is not None or given.analyser is not None
+    return _of_waves(config) or config.polarisation.given
 
 
 def _direction(config: Config) -> float:

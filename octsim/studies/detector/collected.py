@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from octsim.config.models import Config
 from octsim.config.scheme import options_of
 from octsim.instrument.build import optics_of, scene_of
+from octsim.schemes.band_nodes import nodes_within, to_coefficients
 from octsim.schemes.field_sum import field, intensity_of
 from octsim.schemes.light import Field, Optics
 from octsim.schemes.reference_arm import with_reference
@@ -104,14 +105,13 @@ class _Rays(NamedTuple):
         """Return rays with numbers (Q, D), as `Returned` has them, with a detector's amplitudes."""
         at = _middle(optics)
         if optics.varies:
-            at = at + (optics.band[1] - optics.band[0]) / 2 * chebyshev.chebpts1(_NODES)
+            at = nodes_within(*optics.band, _NODES)
         repeated = np.broadcast_to(
             numbers[:, np.newaxis], (numbers.shape[0], at.size, numbers.shape[1])
         )
         amplitude = numbers[FIRST_FIELD] * weights(optics, repeated, at)
         if optics.varies:
-            nodes = chebyshev.chebvander(chebyshev.chebpts1(_NODES), _NODES - 1)
-            amplitude = np.linalg.inv(nodes) @ amplitude
+            amplitude = to_coefficients(_NODES) @ amplitude
         return cls(amplitude, numbers[LENGTH], np.hypot(numbers[X], numbers[Y]))
 
     @property

@@ -16,7 +16,7 @@ from octsim.datasets.files import make
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 from octsim.phase.estimators.sinusoid import sinusoid
-from octsim.phase.slopes import slope_of
+from octsim.phase.slopes import line_slope, slope_of
 from octsim.studies.diffraction.peaks import WINDOWS, peak_within
 from octsim.studies.validity.errors import by_estimator
 
@@ -117,7 +117,7 @@ def diffraction(
         intensity.append(scan_by(instrument))
         phase.append(phase_of(instrument, diameter, LAW.at(diameter)))
         rows = (phase_of(instrument, sparse, LAW.at(sparse) + by) for by in OFFSETS)
-        off.append([_line(sparse, row) for row in rows])
+        off.append([line_slope(sparse, row) for row in rows])
     return make(
         "diffraction",
         config,
@@ -133,11 +133,6 @@ def diffraction(
     )
 
 
-def _line(diameter: Array, phase: Array) -> float:
-    """Return the slope of the line through phases over the diameter."""
-    return float(np.polyfit(diameter, phase, 1)[0])
-
-
 def _variables(
     config: Config, heights: Array, intensity: Array, diameter: Array, phase: Array, off: Array
 ) -> dict[str, Any]:
@@ -147,7 +142,7 @@ def _variables(
         for row in intensity
     ])  # fmt: skip
     slope = np.stack([slope_of(diameter, row) for row in phase])
-    mean = np.array([_line(diameter, row) for row in phase])
+    mean = np.array([line_slope(diameter, row) for row in phase])
     change = slope - slope[0]
     local = np.sqrt(((change - change.mean(axis=1, keepdims=True)) ** 2).mean(axis=1))
     return {

@@ -15,7 +15,7 @@ def is_on(config: Config, kind: str) -> bool:
     on = {
         "dispersion": config.dispersive,
         "attenuation": any(scene.attenuation.of.values()),
-        "polarisation": (config.polarisation.input, config.polarisation.analyser) != (None, None),
+        "polarisation": config.polarisation.given,
         "zernike": bool(objective.zernike.of),
         "focal shift": shift is not None and shift.moves,
         "pupil": objective.pupil not in (None, "uniform"),
