@@ -16,6 +16,7 @@ from octsim.base.records import room
 from octsim.optics.beam import Beam, aim
 from octsim.optics.detector import Acceptance, Detector, falloff, rim_margin
 from octsim.optics.scene import Scene
+from octsim.optics.turned_rays import STRAIGHT
 from octsim.tracing.faces import Faces, faces_at
 from octsim.tracing.follow import FOLLOW_ROOM, Bundle, FollowRoom, bundle_of, follow
 from octsim.tracing.kernel import AT_VX, AT_VY, AT_X, AT_Y, FIRST_CARRIED, trace_amplitudes
@@ -94,7 +95,9 @@ def _sum_cells(
         count += 1
         if count < LANES and number + 1 < total:
             continue
-        follow(faces, face, through, meetings, beam, count, detector, focus, rays, bundle)
+        follow(
+            faces, face, through, meetings, beam, count, detector, focus, STRAIGHT, rays, bundle
+        )
         for i in range(count):
             if not bundle.followed[i]:
                 continue

@@ -86,8 +86,9 @@ TEMPLATE = """# Rays beside Maxwell's equations
 Written by `make docs` from `results/thesis/validity.nc`; do not edit. `snakemake validity` makes
 it, in about two minutes of processor time. For the configured instrument, and with one quantity
 varied at a time, it compares both schemes of rays with the scheme `fullwave` (accuracy 1e-4) at
-{number} diameters from {first} to {last} µm, {band}. Rays have the thesis's pupil, lit evenly, in
-every case; `fullwave` without `objective.pupil` has a fibre's.
+{number} diameters from {first} to {last} µm, {band}. Where a pupil is named it
+weighs rays too, as they are launched; without `objective.pupil` it is even for rays, and a fibre's
+mode for `fullwave`.
 
 A slope is nothing without its pupil, focus and estimator. The focus follows the diameter by the
 law, or is held while a slope is taken (as while a neuron fires). Estimators are the thesis's

@@ -289,9 +289,9 @@ def test_rays_that_nothing_is_known_of_have_no_error_and_say_so(
     [
         ({"calibration": {"scheme": "fullwave"}, "objective": {"numerical_aperture": 1.4}},
          r"calibration\.scheme: fullwave given, but .*numerical_aperture: 1\.4 given"),
-        ({"calibration": {"scheme": "paths"}, "tracing": {"scheme": "fullwave"},
-          "objective": {"pupil": {"gaussian": 0.5}}},
-         r"calibration\.scheme: paths given, which does not weigh the pupil, and objective\.pupil"),
+        ({"calibration": {"scheme": "paths"}, "tracing": {"scheme": "vogel"},
+          "beam": {"waist": "diffraction"}},
+         r"calibration\.scheme: paths given, which has rays that meet in the focus, and beam\.waist"),
         ({"budget": {"cpu_hours": 0.001}}, r"budget\.cpu_hours: 0\.001 given, but a calibration"),
     ],
 )  # fmt: skip

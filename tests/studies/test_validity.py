@@ -88,12 +88,16 @@ def test_the_slopes_of_a_window_are_those_of_a_sweep() -> None:
         assert found.slope[mode, 0] == pytest.approx(expected, rel=1e-9)
 
 
-def test_one_quantity_is_varied_at_a_time_and_rays_keep_the_thesis_s_pupil() -> None:
+def test_one_quantity_is_varied_at_a_time_in_rays_and_waves_alike() -> None:
     every = cases(RUN)
     assert len({case.name for case in every}) == len(every)
     for case in every:
         for rays in case.rays:
-            assert rays.pupil == "uniform"
+            given = case.exact.objective.pupil
+            assert rays.pupil == ("uniform" if given is None else given)
+            assert rays.objective.numerical_aperture == case.exact.objective.numerical_aperture
+            assert rays.swept_index == case.exact.swept_index
+            assert rays.scene.swept_gap == case.exact.scene.swept_gap
     base = every[0].exact
     for case in every[1:]:
         moved = {
