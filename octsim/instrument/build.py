@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterable
 from itertools import accumulate
 from math import pi
 from typing import TYPE_CHECKING
@@ -18,11 +19,13 @@ from octsim.optics.falloff import (
     Parabolic,
     TopHat,
 )
+from octsim.optics.layered import Body, Layer, layered
 from octsim.optics.polarisation import LEFT, RIGHT, Polarisation, linear
 from octsim.optics.pupil import FibrePupil, GaussianPupil, Pupil, UniformPupil
-from octsim.optics.scene import Region, Scene, neuron_on_glass, plates
+from octsim.optics.scene import Region, Scene, plates
 from octsim.optics.zernike import Aberration
 from octsim.schemes.light import Optics
+from octsim.tracing.light_paths import names_of_paths
 
 if TYPE_CHECKING:
     # what light is traced through follows from values of the config, not from how it is read
@@ -39,7 +42,7 @@ def detector_of(config: Config) -> Detector:
 
 
 def scene_of(config: Config, diameter: float) -> Scene:
-    """Return the scene of a config: a slide and a cylinder, or plates, the two that schemes have.
+    """Return the scene of a config: layers, and the cylinders in one of them.
 
     Parameters
     ----------
@@ -51,14 +54,25 @@ def scene_of(config: Config, diameter: float) -> Scene:
     scene = config.scene
     if not scene.cylinders:
         return _plates(scene, diameter)
-    (cylinder,) = scene.cylinders
-    taken = scene.attenuation.of
-    names = scene.objective_medium, scene.host_medium, scene.swept_medium
-    glass, water, neuron = (taken.get(name, 0.0) for name in names)
-    return neuron_on_glass(
-        scene.objective_material, scene.host_material, scene.swept_material,
-        scene.swept_gap, diameter, cylinder.x, cylinder.azimuth, (glass, water, neuron),
-    )  # fmt: skip
+
+    def region(medium: str) -> Region:
+        taken = scene.attenuation.of.get(medium, 0.0)
+        return Region(medium, scene.refractive_index.of[medium], taken)
+
+    layers = [
+        Layer(region(layer.medium), *([thick] if isinstance(thick := layer.thickness, float) else []))
+        for layer in scene.layers
+    ]
+    bodies = [
+        Body(
+            tuple(region(part.medium) for part in (*cylinder.shells, cylinder)),
+            tuple(shell.thickness for shell in cylinder.shells),
+            diameter if cylinder.diameter is None else cylinder.diameter,
+            scene.gap_of(cylinder), cylinder.x, cylinder.azimuth, cylinder.elevation,
+        )
+        for cylinder in scene.cylinders
+    ]  # fmt: skip
+    return layered(layers, scene.host, bodies)
 
 
 def _plates(scene: SceneConfig, thickness: float) -> Scene:
@@ -89,6 +103,12 @@ def _plates(scene: SceneConfig, thickness: float) -> Scene:
 def surface_names(config: Config) -> tuple[str, ...]:
     """Return the short names of the scene's surfaces, of which those of light paths are made."""
     return scene_of(config, config.focus_scan.diameter).surface_names
+
+
+def light_path_names(config: Config, codes: Iterable[int]) -> list[str]:
+    """Return the names of the light paths of some codes, in the scene of a plain config."""
+    scene = scene_of(config, config.focus_scan.diameter)
+    return names_of_paths(scene, config.spectrum.middle, codes)
 
 
 def pupil_of(config: Config) -> Pupil:

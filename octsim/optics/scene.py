@@ -1,7 +1,9 @@
 """The scene: regions, the surfaces between them, the neuron over its glass slide, and plates."""
 
+import math
+from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -67,7 +69,7 @@ class Plane:
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A horizontal cylinder with its axis through (x, 0, z), all in µm, between two regions."""
+    """A cylinder with its axis through (x, 0, z), all in µm, between two regions."""
 
     name: str
     """Short, as it stands in the names of light paths."""
@@ -78,6 +80,8 @@ class Cylinder:
     outside: Region
     azimuth: float = 0.0
     """Angle from the y axis to its axis, (−sin, cos, 0), rad."""
+    elevation: float = 0.0
+    """Angle by which its axis is lifted after that, (−sin cos, cos cos, sin), rad."""
 
     @property
     def sides(self) -> tuple[Region, Region]:
@@ -85,28 +89,69 @@ class Cylinder:
         return self.inside, self.outside
 
     @property
-    def row(self) -> tuple[float, ...]:
-        """Its shape in numbers: axis x and z, and radius, µm.
+    def along_y(self) -> bool:
+        """Whether its axis is parallel to y."""
+        return self.azimuth == 0 and self.elevation == 0
 
-        Raises
-        ------
-        ValueError
-            If it is not along y, as faces have no numbers for another direction.
-        """
-        if self.azimuth:
-            raise ValueError(
-                f"a cylinder at an azimuth of {self.azimuth} rad has no faces for rays"
-            )
-        return self.x, self.z, self.radius
+    @property
+    def axis(self) -> tuple[float, float, float]:
+        """Unit vector along its axis."""
+        level = math.cos(self.elevation)
+        return (
+            -math.sin(self.azimuth) * level, math.cos(self.azimuth) * level,
+            math.sin(self.elevation),
+        )  # fmt: skip
+
+    @property
+    def row(self) -> tuple[float, ...]:
+        """Its shape in numbers: axis x and z, and radius, µm; then its axis, if it is not y."""
+        place = self.x, self.z, self.radius
+        return place if self.along_y else (*place, *self.axis)
 
     @property
     def symmetry(self) -> Symmetry:
         """Its symmetry."""
-        along_y = self.azimuth == 0
-        return Symmetry(x=along_y and self.x == 0, y=along_y)
+        return Symmetry(x=self.azimuth == 0 and self.x == 0, y=self.along_y)
+
+    def mirrored(self, *, x: bool) -> "Cylinder":
+        """Return it as seen in the plane x = 0, or in y = 0."""
+        place = {"x": -self.x} if x else {"elevation": -self.elevation}
+        return replace(self, azimuth=-self.azimuth, **place)
 
 
-Surface = Plane | Cylinder
+@dataclass(frozen=True)
+class PlanePart:
+    """A part of a horizontal plane: where a lifted cylinder ends at it, or all but that."""
+
+    name: str
+    """Short, as it stands in the names of light paths."""
+    height: float
+    below: Region
+    above: Region
+    cylinders_above: bool
+    """Whether the cylinders that end there lie above the plane."""
+    within: Cylinder | None
+    """It is in this one; without, anywhere."""
+    without: tuple[Cylinder, ...]
+    """It is in none of these."""
+
+    @property
+    def sides(self) -> tuple[Region, Region]:
+        """The regions below and above."""
+        return self.below, self.above
+
+    @property
+    def row(self) -> tuple[float, ...]:
+        """Its shape in numbers: height, µm."""
+        return (self.height,)
+
+    @property
+    def symmetry(self) -> Symmetry:
+        """Its symmetry; that of the cylinders that end there is theirs."""
+        return Symmetry(x=True, y=True)
+
+
+Surface = Plane | PlanePart | Cylinder
 
 
 @dataclass(frozen=True)
@@ -169,11 +214,18 @@ class Scene:
 
     @property
     def symmetry(self) -> Symmetry:
-        """The symmetry of all surfaces together."""
-        return Symmetry(
-            x=all(surface.symmetry.x for surface in self.surfaces),
-            y=all(surface.symmetry.y for surface in self.surfaces),
+        """The symmetry of all surfaces together; of two cylinders one can be the other's image."""
+        cylinders = [one for one in self.surfaces if isinstance(one, Cylinder)]
+        there = Counter(map(_without_names, cylinders))
+        in_x, in_y = (
+            Counter(_without_names(one.mirrored(x=x)) for one in cylinders) for x in (True, False)
         )
+        return Symmetry(x=in_x == there, y=in_y == there)
+
+
+def _without_names(cylinder: Cylinder) -> Cylinder:
+    inside, outside = (replace(region, name="") for region in cylinder.sides)
+    return replace(cylinder, name="", inside=inside, outside=outside)
 
 
 NEURON_ON_GLASS = ("P", "C")

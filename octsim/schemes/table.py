@@ -152,6 +152,13 @@ COUNTED_RAYS = Scheme(
         Ability.ODD_ALONG,
         Ability.FIBRE_FALLOFF,
         Ability.WAIST,
+        Ability.LAYERS,
+        Ability.CYLINDERS,
+        Ability.OFF_AXIS,
+        Ability.AZIMUTH,
+        Ability.ELEVATION,
+        Ability.SHELLS,
+        Ability.NO_CYLINDER,
     },
 )
 """The thesis's: a sunflower spiral of rays, each followed through the whole tree."""

@@ -1,16 +1,19 @@
 """Light paths: which surfaces light meets, in order, and whether it is reflected at each.
 
 A path's code is a number whose digits, in base 2 S for S surfaces, are its meetings: twice the
-surface's number, plus one if the light goes through. A leading 1 keeps the zeros.
+surface's number, plus one if the light goes through. A leading 1 keeps the zeros. Those of general
+scenes are counted instead (`octsim.tracing.path_codes`).
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
-from octsim.tracing.faces import Faces
+from octsim.optics.scene import Scene
+from octsim.tracing.faces import AnyFaces, Faces, faces_at
+from octsim.tracing.path_codes import steps_of_code
 
 LONGEST = 31
 """Most meetings that a code has room for."""
@@ -36,6 +39,21 @@ def path_name(code: int, surfaces: Sequence[str]) -> str:
         code, digit = divmod(code, 2 * len(surfaces))
         meetings.append(surfaces[digit // 2] + "RT"[digit % 2])
     return " ".join(reversed(meetings))
+
+
+def names_of_paths(scene: Scene, wavenumber: float, codes: Iterable[int]) -> list[str]:
+    """Return the names of the light paths of some codes in a scene, as ``glass T axon R glass T``.
+
+    The scene's topology has them; the wavenumber is any that its materials are known at, 1/µm.
+    """
+    faces, names = faces_at(scene, wavenumber), scene.surface_names
+    if not isinstance(faces, AnyFaces) or not len(faces.counts):
+        return [path_name(code, names) for code in codes]
+    said = [name if len(name) == 1 else f"{name} " for name in names]
+    return [
+        " ".join(said[step // 4] + "RT"[step % 2] for step in steps_of_code(faces, code))
+        for code in codes
+    ]
 
 
 @register_jitable
