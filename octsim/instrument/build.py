@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
 from itertools import accumulate
 from math import pi
 from typing import TYPE_CHECKING
@@ -25,7 +24,6 @@ from octsim.optics.pupil import FibrePupil, GaussianPupil, Pupil, UniformPupil
 from octsim.optics.scene import Region, Scene, plates
 from octsim.optics.zernike import Aberration
 from octsim.schemes.light import Optics
-from octsim.tracing.light_paths import names_of_paths
 
 if TYPE_CHECKING:
     # what light is traced through follows from values of the config, not from how it is read
@@ -103,12 +101,6 @@ def _plates(scene: SceneConfig, thickness: float) -> Scene:
 def surface_names(config: Config) -> tuple[str, ...]:
     """Return the short names of the scene's surfaces, of which those of light paths are made."""
     return scene_of(config, config.focus_scan.diameter).surface_names
-
-
-def light_path_names(config: Config, codes: Iterable[int]) -> list[str]:
-    """Return the names of the light paths of some codes, in the scene of a plain config."""
-    scene = scene_of(config, config.focus_scan.diameter)
-    return names_of_paths(scene, config.spectrum.middle, codes)
 
 
 def pupil_of(config: Config) -> Pupil:
