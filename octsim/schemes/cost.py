@@ -78,7 +78,7 @@ def of_rays(options: Mapping[str, Any], _diameter: float) -> PointCost:
 _PIECES = 72.0  # of each ray of the thesis's
 _AT_FIVE = 18.0  # of a ray that meets five surfaces
 
-MOST_PIECES = 2e9
+MOST_PIECES = 1e9
 """Straight pieces of ray in the trees of a point, by estimate, beyond which none is begun: their
 arrivals would not go into a gigabyte."""
 
