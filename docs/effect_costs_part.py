@@ -8,10 +8,10 @@ from markdown import table
 def effect_costs_part(trade: xr.Dataset) -> str:
     """Write what each kind of effect costs, and what it changes, by each scheme."""
     schemes = [str(name) for name in trade["effect_scheme"].values]
-    rows = [
-        [str(one["effect"].item()), *(_cell(one.isel(effect_scheme=i)) for i in range(len(schemes)))]
-        for one in (trade.isel(effect=i) for i in range(trade.sizes["effect"]))
-    ]
+    rows = []
+    for name in trade["effect"].values:
+        one = trade.sel(effect=name)
+        rows.append([str(name), *(_cell(one.sel(effect_scheme=scheme)) for scheme in schemes)])
     return table(["effect", *schemes], rows)
 
 

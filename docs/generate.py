@@ -60,7 +60,7 @@ def keys(model: type[BaseModel], values: dict[str, object], prefix: str = "") ->
     rows = []
     for name, field in model.model_fields.items():
         value, kind = values[name], field.annotation
-        if isinstance(value, dict) and "num" not in value and isinstance(kind, type):
+        if isinstance(value, dict) and value and "num" not in value and isinstance(kind, type):
             rows += keys(kind, value, f"{prefix}{name}.")
         else:
             default = json.dumps(value).replace('"', "")

@@ -72,7 +72,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     "phase_status": ("1", "whether the component is more than rounding, and so has a phase"),
     "phase_slope": ("mrad/nm", "phase slope of the strongest component, or of the estimator"),
     "phase_slope_standard_deviation": ("mrad/nm", "scatter of the phase slope about its mean"),
-    "predicted_phase_slope": ("mrad/nm", "predicted phase slope, n_neuron (k_min + k_max)"),
+    "predicted_phase_slope": ("mrad/nm", "predicted phase slope, n(k_min) k_min + n(k_max) k_max"),
     "rays_detected": ("1", "number of rays detected"),
     "real": ("1", "real part of the field, without the phase that was taken out"),
     "relative_residual": ("1", "residual over the range of the intensity"),

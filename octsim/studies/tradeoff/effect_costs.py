@@ -62,9 +62,10 @@ def effect_costs(
     light = [swept for _, swept in found]
     status = column(variant.status for variant, _ in found)
     accuracy = column(one.status if one else AccuracyStatus.NOT_CONTROLLED for one in light)
+    cost, change = (one.cost_ratio if one else np.nan for one in light), map(_change, light)
     variables = {
-        "effect_cost_ratio": (shape, column(one.cost_ratio if one else np.nan for one in light)),
-        "effect_intensity_change": (shape, column(_change(one) if one else np.nan for one in light)),
+        "effect_cost_ratio": (shape, column(cost)),
+        "effect_intensity_change": (shape, column(change)),
         "effect_status": (shape, *flags(EffectStatus, status)),
         "effect_accuracy_status": (shape, *flags(AccuracyStatus, accuracy)),
     }
@@ -105,7 +106,9 @@ def _least(config: Config) -> Config:
     return config.model_copy(update={"tracing": config.tracing.model_copy(update=_WARM)})
 
 
-def _change(found: Swept) -> float:
+def _change(found: Swept | None) -> float:
     """Return the change of the intensity over its maximum, median of the diameters."""
+    if found is None:
+        return np.nan
     off = np.abs(found.with_effect - found.without_effect).max(axis=1)
     return float(np.median(off / found.without_effect.max(axis=1)))
