@@ -63,9 +63,12 @@ def series_of(model: Falloff, reach: float, wavenumber: float) -> Parabola | Ser
 
 
 def falloff_at(model: Parabola | Series, squared: float, and_squared: float) -> float:
-    """Return a falloff at a distance whose square is given in two parts, those of x and y."""
+    """Return a falloff at a distance whose square is given in two parts, those of x and y.
+
+    Beyond the edge, where a rougher map may put light, a series is what it is there.
+    """
     if isinstance(model, Series):
-        return _sum(model.coefficients, squared + and_squared)
+        return _sum(model.coefficients, min(squared + and_squared, 1.0))
     return falloff(squared, and_squared)
 
 
@@ -84,5 +87,7 @@ def _sum(coefficients: NDArray[np.float64], squared: float) -> float:
 @overload(falloff_at, strict=False)
 def _compile_falloff_at(model: Any, squared: Any, and_squared: Any) -> Callable[..., Any]:  # noqa: ARG001
     if model.instance_class is Series:
-        return lambda model, squared, and_squared: _sum(model.coefficients, squared + and_squared)
+        return lambda model, squared, and_squared: _sum(
+            model.coefficients, min(squared + and_squared, 1.0)
+        )
     return lambda model, squared, and_squared: falloff(squared, and_squared)  # noqa: ARG005
