@@ -18,10 +18,10 @@ from octsim.optics.falloff import (
     Parabolic,
     TopHat,
 )
-from octsim.optics.layered import Body, Layer, layered
+from octsim.optics.layered import Body, Layer, layered, plates
 from octsim.optics.polarisation import LEFT, RIGHT, Polarisation, linear
 from octsim.optics.pupil import FibrePupil, GaussianPupil, Pupil, UniformPupil
-from octsim.optics.scene import Region, Scene, plates
+from octsim.optics.scene import Region, Scene
 from octsim.optics.zernike import Aberration
 from octsim.schemes.light import Optics
 
@@ -58,7 +58,9 @@ def scene_of(config: Config, diameter: float) -> Scene:
         return Region(medium, scene.refractive_index.of[medium], taken)
 
     layers = [
-        Layer(region(layer.medium), *([thick] if isinstance(thick := layer.thickness, float) else []))
+        Layer(
+            region(layer.medium), *([thick] if isinstance(thick := layer.thickness, float) else [])
+        )
         for layer in scene.layers
     ]
     bodies = [

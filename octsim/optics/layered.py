@@ -148,3 +148,23 @@ def _with_thesis_names(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
     plane, cylinder = NEURON_ON_GLASS
     names = (plane, NEURON_FOOT, cylinder) if len(flat) > 1 else (plane, cylinder)
     return tuple(replace(one, name=name) for one, name in zip(surfaces, names, strict=True))
+
+
+def plates(regions: Sequence[Region], heights: Sequence[float]) -> Scene:
+    """Return horizontal planes, one above the other.
+
+    Parameters
+    ----------
+    regions : sequence of Region
+        From below, each another one; the lowest is the objective's.
+    heights : sequence of float
+        Of the planes between them, increasing, µm.
+    """
+    between = zip(_names_of_planes(len(heights)), heights, pairwise(regions), strict=True)
+    return Scene(regions[0], tuple(Plane(name, height, *sides) for name, height, sides in between))
+
+
+def _names_of_planes(number: int) -> list[str]:
+    # without R and T, which say what light does there, and C, the cylinder's
+    letters = "PQSUVWXYZ"
+    return [*letters, *(f"P{n}" for n in range(len(letters) + 1, number + 1))][:number]

@@ -1,10 +1,8 @@
-"""The scene: regions, the surfaces between them, the neuron over its glass slide, and plates."""
+"""The scene: regions, the surfaces between them, and the neuron over its glass slide."""
 
 import math
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -61,10 +59,9 @@ class Plane:
         """Its shape in numbers: height, µm."""
         return (self.height,)
 
-    @property
-    def symmetry(self) -> Symmetry:
-        """Its symmetry."""
-        return Symmetry(x=True, y=True)
+    def turned(self, angle: float) -> "Plane":  # noqa: ARG002
+        """Return it as seen from axes that are turned about the optical axis."""
+        return self
 
 
 @dataclass(frozen=True)
@@ -108,15 +105,22 @@ class Cylinder:
         place = self.x, self.z, self.radius
         return place if self.along_y else (*place, *self.axis)
 
-    @property
-    def symmetry(self) -> Symmetry:
-        """Its symmetry."""
-        return Symmetry(x=self.azimuth == 0 and self.x == 0, y=self.along_y)
+    def turned(self, angle: float) -> "Cylinder":
+        """Return it as seen from axes that are turned from x to y by an angle, rad.
 
-    def mirrored(self, *, x: bool) -> "Cylinder":
-        """Return it as seen in the plane x = 0, or in y = 0."""
-        place = {"x": -self.x} if x else {"elevation": -self.elevation}
-        return replace(self, azimuth=-self.azimuth, **place)
+        One that never meets the plane y = 0 there can't be said.
+        """
+        azimuth, elevation = self.azimuth - angle, abs(self.elevation)
+        # a line has two directions: that which is lifted, or of two level ones that closer to y
+        azimuth += math.pi if self.elevation < 0 else 0.0
+        azimuth = math.remainder(azimuth, 2 * math.pi if elevation else math.pi)
+        if self.x == 0:
+            return replace(self, azimuth=azimuth, elevation=elevation)
+        along = self.x * math.sin(angle) / math.cos(self.azimuth - angle)
+        return replace(
+            self, x=self.x * math.cos(self.azimuth) / math.cos(self.azimuth - angle),
+            z=self.z + along * math.tan(self.elevation), azimuth=azimuth, elevation=elevation,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -145,10 +149,12 @@ class PlanePart:
         """Its shape in numbers: height, µm."""
         return (self.height,)
 
-    @property
-    def symmetry(self) -> Symmetry:
-        """Its symmetry; that of the cylinders that end there is theirs."""
-        return Symmetry(x=True, y=True)
+    def turned(self, angle: float) -> "PlanePart":
+        """Return it as seen from axes that are turned from x to y by an angle, rad."""
+        within = self.within and self.within.turned(angle)
+        return replace(
+            self, within=within, without=tuple(one.turned(angle) for one in self.without)
+        )
 
 
 Surface = Plane | PlanePart | Cylinder
@@ -216,16 +222,30 @@ class Scene:
     def symmetry(self) -> Symmetry:
         """The symmetry of all surfaces together; of two cylinders one can be the other's image."""
         cylinders = [one for one in self.surfaces if isinstance(one, Cylinder)]
-        there = Counter(map(_without_names, cylinders))
-        in_x, in_y = (
-            Counter(_without_names(one.mirrored(x=x)) for one in cylinders) for x in (True, False)
+        there, in_x, in_y = (
+            Counter(_seen(one, *signs) for one in cylinders) for signs in ((1, 1), (-1, 1), (1, -1))
         )
         return Symmetry(x=in_x == there, y=in_y == there)
 
+    def turned(self, angle: float) -> "Scene":
+        """Return it as seen from axes that are turned from x to y by an angle, rad."""
+        if angle == 0:
+            return self
+        return replace(self, surfaces=tuple(surface.turned(angle) for surface in self.surfaces))
 
-def _without_names(cylinder: Cylinder) -> Cylinder:
-    inside, outside = (replace(region, name="") for region in cylinder.sides)
-    return replace(cylinder, name="", inside=inside, outside=outside)
+
+_SAME = 12  # decimals in which numbers of mirror images agree, whose axes are turned
+
+
+def _seen(cylinder: Cylinder, x: int, y: int) -> tuple[object, ...]:
+    """Return all of a cylinder but its names, with the signs of x and y changed as asked for."""
+    across, along, up = cylinder.axis
+    axis = [round(one, _SAME) for one in (up, y * along, x * across)]
+    sign = next(math.copysign(1.0, one) for one in axis if one)
+    # any place is on an axis along x
+    place = 0.0 if axis[:2] == [0, 0] else round(x * cylinder.x, _SAME)
+    sides = ((one.material, one.attenuation) for one in cylinder.sides)
+    return (place, cylinder.z, cylinder.radius, *(sign * one for one in axis), *sides)
 
 
 NEURON_ON_GLASS = ("P", "C")
@@ -269,23 +289,3 @@ def neuron_on_glass(
             Cylinder(cylinder, x, gap + radius, radius, inside=axon, outside=bath, azimuth=azimuth),
         ),
     )
-
-
-def plates(regions: Sequence[Region], heights: Sequence[float]) -> Scene:
-    """Return horizontal planes, one above the other.
-
-    Parameters
-    ----------
-    regions : sequence of Region
-        From below, each another one; the lowest is the objective's.
-    heights : sequence of float
-        Of the planes between them, increasing, µm.
-    """
-    between = zip(_names_of_planes(len(heights)), heights, pairwise(regions), strict=True)
-    return Scene(regions[0], tuple(Plane(name, height, *sides) for name, height, sides in between))
-
-
-def _names_of_planes(number: int) -> list[str]:
-    # without R and T, which say what light does there, and C, the cylinder's
-    letters = "PQSUVWXYZ"
-    return [*letters, *(f"P{n}" for n in range(len(letters) + 1, number + 1))][:number]

@@ -5,18 +5,20 @@ surface's number, plus one if the light goes through. A leading 1 keeps the zero
 scenes are counted instead (`octsim.tracing.path_codes`).
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 import numpy as np
-from numba.extending import register_jitable
+from numba.extending import overload, register_jitable
 from numpy.typing import NDArray
 
 from octsim.optics.scene import Scene
 from octsim.tracing.faces import AnyFaces, Faces, faces_at
 from octsim.tracing.path_codes import steps_of_code
+from octsim.tracing.path_counts import MOST_MEETINGS
 
-LONGEST = 31
-"""Most meetings that a code has room for."""
+LONGEST = MOST_MEETINGS
+"""Most meetings of a path that has a code."""
 
 
 def path_name(code: int, surfaces: Sequence[str]) -> str:
@@ -57,11 +59,9 @@ def names_of_paths(scene: Scene, wavenumber: float, codes: Iterable[int]) -> lis
 
 
 @register_jitable
-def steps_of(faces: Faces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]) -> int:
-    """Read a path's code into the faces that it meets, and how it leaves each; return how many.
-
-    `face` and `through` have room for `LONGEST` meetings.
-    """
+def _by_digits(
+    faces: Faces | AnyFaces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]
+) -> int:
     base, num = faces.kind.size, 0
     rest = code
     while rest > 1:
@@ -77,3 +77,49 @@ def steps_of(faces: Faces, code: int, face: NDArray[np.int64], through: NDArray[
         after = faces.after_transmission if through[m] else faces.after_reflection
         departure = after[face[m]]
     return num
+
+
+@register_jitable
+def _by_counts(
+    faces: AnyFaces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]
+) -> int:
+    if faces.counts.shape[0] == 0:
+        return _by_digits(faces, code, face, through)
+    num = 0
+    while num + 1 < faces.numbers.size and faces.numbers[num + 1] <= code:
+        num += 1
+    rest, departure = code - faces.numbers[num], 0
+    for m in range(num):
+        left, here = num - 1 - m, departure
+        for choice in range(faces.first[here], faces.first[here + 1]):
+            f = faces.next_face[choice]
+            face[m] = f
+            through[m], departure = False, faces.after_reflection[f]
+            there = faces.counts[left, departure]
+            if rest < there:
+                break
+            rest -= there
+            through[m], departure = True, faces.after_transmission[f]
+            there = faces.counts[left, departure]
+            if rest < there:
+                break
+            rest -= there
+    return num
+
+
+def steps_of(
+    faces: Faces | AnyFaces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]
+) -> int:
+    """Read a path's code into the faces that it meets, and how it leaves each; return how many.
+
+    `face` and `through` have room for `LONGEST` meetings.
+    """
+    read = _by_counts if isinstance(faces, AnyFaces) else _by_digits
+    return read(faces, code, face, through)  # type: ignore[operator]
+
+
+@overload(steps_of, strict=False)
+def _compile_steps_of(
+    faces: Any, code: Any, face: Any, through: Any  # noqa: ARG001
+) -> Callable[..., int]:  # fmt: skip
+    return _by_counts if faces.instance_class is AnyFaces else _by_digits
