@@ -11,6 +11,7 @@ from octsim.config.abilities import beyond_scheme
 from octsim.config.fields import DECIMALS, Range
 from octsim.config.models import Config, FocusLine
 from octsim.config.scene_checks import diameters_of, impossible_scene, least_index, scene_remarks
+from octsim.config.tree import impossible_tree
 from octsim.config.units import format_length
 from octsim.optics.two_beams import aliasing_step
 from octsim.schemes.cost import MOST_WAVENUMBERS, MOST_WAVES, partial_waves, wavenumbers
@@ -58,6 +59,7 @@ def impossible(config: Config) -> Iterator[str]:
         yield from of_scene
     else:
         yield from beyond_scheme(config)
+        yield from impossible_tree(config)
         yield from _below_objective(config)
     band = config.spectrum.wavelength
     if not band.min < band.max:

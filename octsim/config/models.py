@@ -61,7 +61,7 @@ class Tracing(Section):
         1e-4, "of the scheme paths: largest error of the intensity over the largest intensity"
     )
     rays: Annotated[int, Field(ge=1, le=10_000_000)] = _key(3000, "at the objective")
-    max_intersections: Annotated[int, Field(ge=1, le=30)] = _key(
+    max_intersections: Annotated[int, Field(ge=1, le=60)] = _key(
         11, "meetings with the plane and the cylinder on one ray"
     )
     min_amplitude: Annotated[Number, Field(ge=0, lt=1)] = _key(

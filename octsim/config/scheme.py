@@ -1,12 +1,14 @@
 """The scheme of a config: its row of the table, its options, and the keys that light depends on."""
 
 from collections.abc import Mapping
+from math import log2
 from typing import Any
 
 from octsim.config.derive import parts_of
 from octsim.config.light import FibreMode
 from octsim.config.models import Config
-from octsim.schemes.cost import SAMPLE_BYTES, SAMPLED, PointCost
+from octsim.config.tree import pieces_of_tree
+from octsim.schemes.cost import SAMPLE_BYTES, SAMPLED, PointCost, of_tree
 from octsim.schemes.table import SCHEMES, Scheme
 
 
@@ -40,6 +42,8 @@ def way_varies(config: Config) -> bool:
 def rate_name(config: Config) -> str:
     """Name the points of a plain config: those of a name take about the same."""
     name = scheme_of(config).rate_name(options_of(config))
+    if pieces := pieces_of_tree(config):
+        name = f"{name} tree {round(log2(pieces))}"
     if way_varies(config):
         return f"{name} by wavenumber"
     return f"{name} sampled" if sampled(config) else name
@@ -49,6 +53,8 @@ def point_cost(config: Config) -> PointCost:
     """Return what a point of a plain config takes, by rates measured on one machine."""
     scheme = scheme_of(config)
     cost = scheme.cost(options_of(config), config.sweep.diameters.stop)
+    if pieces := pieces_of_tree(config):
+        cost = of_tree(cost, pieces)
     if sampled(config):
         cost = cost._replace(size=cost.size + SAMPLE_BYTES * config.spectrum.samples)
     times = scheme.by_wavenumber if way_varies(config) else SAMPLED if sampled(config) else 1.0

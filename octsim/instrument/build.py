@@ -18,9 +18,10 @@ from octsim.optics.falloff import (
     Parabolic,
     TopHat,
 )
+from octsim.optics.layered import Body, Layer, layered, plates
 from octsim.optics.polarisation import LEFT, RIGHT, Polarisation, linear
 from octsim.optics.pupil import FibrePupil, GaussianPupil, Pupil, UniformPupil
-from octsim.optics.scene import Region, Scene, neuron_on_glass, plates
+from octsim.optics.scene import Region, Scene
 from octsim.optics.zernike import Aberration
 from octsim.schemes.light import Optics
 
@@ -39,7 +40,7 @@ def detector_of(config: Config) -> Detector:
 
 
 def scene_of(config: Config, diameter: float) -> Scene:
-    """Return the scene of a config: a slide and a cylinder, or plates, the two that schemes have.
+    """Return the scene of a config: layers, and the cylinders in one of them.
 
     Parameters
     ----------
@@ -51,14 +52,27 @@ def scene_of(config: Config, diameter: float) -> Scene:
     scene = config.scene
     if not scene.cylinders:
         return _plates(scene, diameter)
-    (cylinder,) = scene.cylinders
-    taken = scene.attenuation.of
-    names = scene.objective_medium, scene.host_medium, scene.swept_medium
-    glass, water, neuron = (taken.get(name, 0.0) for name in names)
-    return neuron_on_glass(
-        scene.objective_material, scene.host_material, scene.swept_material,
-        scene.swept_gap, diameter, cylinder.x, cylinder.azimuth, (glass, water, neuron),
-    )  # fmt: skip
+
+    def region(medium: str) -> Region:
+        taken = scene.attenuation.of.get(medium, 0.0)
+        return Region(medium, scene.refractive_index.of[medium], taken)
+
+    layers = [
+        Layer(
+            region(layer.medium), *([thick] if isinstance(thick := layer.thickness, float) else [])
+        )
+        for layer in scene.layers
+    ]
+    bodies = [
+        Body(
+            tuple(region(part.medium) for part in (*cylinder.shells, cylinder)),
+            tuple(shell.thickness for shell in cylinder.shells),
+            diameter if cylinder.diameter is None else cylinder.diameter,
+            scene.gap_of(cylinder), cylinder.x, cylinder.azimuth, cylinder.elevation,
+        )
+        for cylinder in scene.cylinders
+    ]  # fmt: skip
+    return layered(layers, scene.host, bodies)
 
 
 def _plates(scene: SceneConfig, thickness: float) -> Scene:

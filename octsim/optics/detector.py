@@ -33,7 +33,7 @@ class Outcome(IntEnum):
     SPENT = 4
     """Met a surface once more than `max_intersections`."""
     FAINT = 5
-    """Not traced: below `min_amplitude`."""
+    """Not traced: below `min_amplitude`, or of no amplitude at all."""
     TOTALLY_REFLECTED = 6
     """Not traced: the transmitted ray of a total reflection, which does not exist."""
 

@@ -94,6 +94,26 @@ def cross_cylinder(
 
 
 @register_jitable(forceinline=True)
+def leave_cylinder(
+    x: float, z: float, radius: float, position: Vector, direction: Vector
+) -> tuple[float, float]:
+    r"""Return the distance from anywhere inside a cylinder along y to its wall.
+
+    .. math:: d = (m' + h) / \lVert v_\parallel \rVert
+
+    Arguments and results as in `enter_cylinder`; infinite for a ray along the axis.
+    """
+    to_x, to_z = x - position.x, z - position.z
+    across = math.sqrt(direction.x * direction.x + direction.z * direction.z)
+    middle = (to_x * direction.x + to_z * direction.z) / across
+    offset = (to_x * direction.z - to_z * direction.x) / across
+    h_squared = (radius - offset) * (radius + offset)
+    h = math.sqrt(max(h_squared, 0.0))
+    distance = max(middle + h, 0.0) / across
+    return (distance if h_squared > 0 else math.inf), h * across / radius
+
+
+@register_jitable(forceinline=True)
 def cylinder_normal(x: float, z: float, curvature: float, position: Vector) -> Vector:
     """Return the normal of a cylinder at a point on it, of a length of nearly 1.
 

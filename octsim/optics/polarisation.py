@@ -56,10 +56,11 @@ def jones_rows(polarisation: Polarisation, azimuth: float) -> NDArray[np.complex
         J, (C, 2): a row for each part that adds to the intensity and not to the field, with the
         factors of the fields across and along.
     """
-    inputs = _inputs(polarisation, azimuth)
     if polarisation.input is None and polarisation.analyser is None:
-        return inputs  # of the four parts two are zero, and the other two alone have the mean
-    return (_detected(polarisation, azimuth)[:, np.newaxis] * inputs).reshape(-1, 2)
+        # of the four parts two are zero, and the other two alone have the mean
+        return np.eye(2, dtype=np.complex128)
+    detected, inputs = _detected(polarisation, azimuth), _inputs(polarisation, azimuth)
+    return (detected[:, np.newaxis] * inputs).reshape(-1, 2)
 
 
 def detected_fields(
@@ -96,15 +97,23 @@ def _detected(polarisation: Polarisation, azimuth: float) -> NDArray[np.complex1
     Without an analyser both detected polarisations count: twice as many parts, of twice the mean.
     """
     if polarisation.analyser is None:
-        return np.eye(2, dtype=np.complex128) * sqrt(2)
+        return _axes(azimuth) * sqrt(2)
     return _in_frame(linear(polarisation.analyser), azimuth).conj()[np.newaxis]
 
 
 def _inputs(polarisation: Polarisation, azimuth: float) -> NDArray[np.complex128]:
     """Return the Jones vectors across and along, (1, 2), or two orthogonal ones of both."""
     if polarisation.input is None:
-        return np.eye(2, dtype=np.complex128)
+        return _axes(azimuth)
     return _in_frame(polarisation.input, azimuth)[np.newaxis]
+
+
+def _axes(azimuth: float) -> NDArray[np.complex128]:
+    """Return x and y of the laboratory by their parts across and along a cylinder, (2, 2).
+
+    With them, what light that is returned unchanged has in each row does not depend on the azimuth.
+    """
+    return np.stack([_in_frame(linear(0.0), azimuth), _in_frame((0j, complex(1)), azimuth)])
 
 
 def _in_frame(jones: tuple[complex, complex], azimuth: float) -> NDArray[np.complex128]:

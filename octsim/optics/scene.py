@@ -1,8 +1,8 @@
-"""The scene: regions, the surfaces between them, the neuron over its glass slide, and plates."""
+"""The scene: regions, the surfaces between them, and the neuron over its glass slide."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from itertools import pairwise
+import math
+from collections import Counter
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -59,15 +59,14 @@ class Plane:
         """Its shape in numbers: height, µm."""
         return (self.height,)
 
-    @property
-    def symmetry(self) -> Symmetry:
-        """Its symmetry."""
-        return Symmetry(x=True, y=True)
+    def turned(self, angle: float) -> "Plane":  # noqa: ARG002
+        """Return it as seen from axes that are turned about the optical axis."""
+        return self
 
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A horizontal cylinder with its axis through (x, 0, z), all in µm, between two regions."""
+    """A cylinder with its axis through (x, 0, z), all in µm, between two regions."""
 
     name: str
     """Short, as it stands in the names of light paths."""
@@ -78,6 +77,8 @@ class Cylinder:
     outside: Region
     azimuth: float = 0.0
     """Angle from the y axis to its axis, (−sin, cos, 0), rad."""
+    elevation: float = 0.0
+    """Angle by which its axis is lifted after that, (−sin cos, cos cos, sin), rad."""
 
     @property
     def sides(self) -> tuple[Region, Region]:
@@ -85,28 +86,78 @@ class Cylinder:
         return self.inside, self.outside
 
     @property
-    def row(self) -> tuple[float, ...]:
-        """Its shape in numbers: axis x and z, and radius, µm.
-
-        Raises
-        ------
-        ValueError
-            If it is not along y, as faces have no numbers for another direction.
-        """
-        if self.azimuth:
-            raise ValueError(
-                f"a cylinder at an azimuth of {self.azimuth} rad has no faces for rays"
-            )
-        return self.x, self.z, self.radius
+    def along_y(self) -> bool:
+        """Whether its axis is parallel to y."""
+        return self.azimuth == 0 and self.elevation == 0
 
     @property
-    def symmetry(self) -> Symmetry:
-        """Its symmetry."""
-        along_y = self.azimuth == 0
-        return Symmetry(x=along_y and self.x == 0, y=along_y)
+    def axis(self) -> tuple[float, float, float]:
+        """Unit vector along its axis."""
+        level = math.cos(self.elevation)
+        return (
+            -math.sin(self.azimuth) * level, math.cos(self.azimuth) * level,
+            math.sin(self.elevation),
+        )  # fmt: skip
+
+    @property
+    def row(self) -> tuple[float, ...]:
+        """Its shape in numbers: axis x and z, and radius, µm; then its axis, if it is not y."""
+        place = self.x, self.z, self.radius
+        return place if self.along_y else (*place, *self.axis)
+
+    def turned(self, angle: float) -> "Cylinder":
+        """Return it as seen from axes that are turned from x to y by an angle, rad.
+
+        One that never meets the plane y = 0 there can't be said.
+        """
+        azimuth, elevation = self.azimuth - angle, abs(self.elevation)
+        # a line has two directions: that which is lifted, or of two level ones that closer to y
+        azimuth += math.pi if self.elevation < 0 else 0.0
+        azimuth = math.remainder(azimuth, 2 * math.pi if elevation else math.pi)
+        if self.x == 0:
+            return replace(self, azimuth=azimuth, elevation=elevation)
+        along = self.x * math.sin(angle) / math.cos(self.azimuth - angle)
+        return replace(
+            self, x=self.x * math.cos(self.azimuth) / math.cos(self.azimuth - angle),
+            z=self.z + along * math.tan(self.elevation), azimuth=azimuth, elevation=elevation,
+        )  # fmt: skip
 
 
-Surface = Plane | Cylinder
+@dataclass(frozen=True)
+class PlanePart:
+    """A part of a horizontal plane: where a lifted cylinder ends at it, or all but that."""
+
+    name: str
+    """Short, as it stands in the names of light paths."""
+    height: float
+    below: Region
+    above: Region
+    cylinders_above: bool
+    """Whether the cylinders that end there lie above the plane."""
+    within: Cylinder | None
+    """It is in this one; without, anywhere."""
+    without: tuple[Cylinder, ...]
+    """It is in none of these."""
+
+    @property
+    def sides(self) -> tuple[Region, Region]:
+        """The regions below and above."""
+        return self.below, self.above
+
+    @property
+    def row(self) -> tuple[float, ...]:
+        """Its shape in numbers: height, µm."""
+        return (self.height,)
+
+    def turned(self, angle: float) -> "PlanePart":
+        """Return it as seen from axes that are turned from x to y by an angle, rad."""
+        within = self.within and self.within.turned(angle)
+        return replace(
+            self, within=within, without=tuple(one.turned(angle) for one in self.without)
+        )
+
+
+Surface = Plane | PlanePart | Cylinder
 
 
 @dataclass(frozen=True)
@@ -169,11 +220,32 @@ class Scene:
 
     @property
     def symmetry(self) -> Symmetry:
-        """The symmetry of all surfaces together."""
-        return Symmetry(
-            x=all(surface.symmetry.x for surface in self.surfaces),
-            y=all(surface.symmetry.y for surface in self.surfaces),
+        """The symmetry of all surfaces together; of two cylinders one can be the other's image."""
+        cylinders = [one for one in self.surfaces if isinstance(one, Cylinder)]
+        there, in_x, in_y = (
+            Counter(_seen(one, *signs) for one in cylinders) for signs in ((1, 1), (-1, 1), (1, -1))
         )
+        return Symmetry(x=in_x == there, y=in_y == there)
+
+    def turned(self, angle: float) -> "Scene":
+        """Return it as seen from axes that are turned from x to y by an angle, rad."""
+        if angle == 0:
+            return self
+        return replace(self, surfaces=tuple(surface.turned(angle) for surface in self.surfaces))
+
+
+_SAME = 12  # decimals in which numbers of mirror images agree, whose axes are turned
+
+
+def _seen(cylinder: Cylinder, x: int, y: int) -> tuple[object, ...]:
+    """Return all of a cylinder but its names, with the signs of x and y changed as asked for."""
+    across, along, up = cylinder.axis
+    axis = [round(one, _SAME) for one in (up, y * along, x * across)]
+    sign = next(math.copysign(1.0, one) for one in axis if one)
+    # any place is on an axis along x
+    place = 0.0 if axis[:2] == [0, 0] else round(x * cylinder.x, _SAME)
+    sides = ((one.material, one.attenuation) for one in cylinder.sides)
+    return (place, cylinder.z, cylinder.radius, *(sign * one for one in axis), *sides)
 
 
 NEURON_ON_GLASS = ("P", "C")
@@ -217,23 +289,3 @@ def neuron_on_glass(
             Cylinder(cylinder, x, gap + radius, radius, inside=axon, outside=bath, azimuth=azimuth),
         ),
     )
-
-
-def plates(regions: Sequence[Region], heights: Sequence[float]) -> Scene:
-    """Return horizontal planes, one above the other.
-
-    Parameters
-    ----------
-    regions : sequence of Region
-        From below, each another one; the lowest is the objective's.
-    heights : sequence of float
-        Of the planes between them, increasing, µm.
-    """
-    between = zip(_names_of_planes(len(heights)), heights, pairwise(regions), strict=True)
-    return Scene(regions[0], tuple(Plane(name, height, *sides) for name, height, sides in between))
-
-
-def _names_of_planes(number: int) -> list[str]:
-    # without R and T, which say what light does there, and C, the cylinder's
-    letters = "PQSUVWXYZ"
-    return [*letters, *(f"P{n}" for n in range(len(letters) + 1, number + 1))][:number]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import comb, factorial, sqrt
+from math import comb, cos, factorial, sin, sqrt
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -64,6 +64,8 @@ NAMES: Mapping[str, int] = MappingProxyType(
 
 With x in its name one has the cosine (m > 0), with y or "oblique" of an even order the sine.
 """
+
+_ROUNDING = 1e-14  # of coefficients that are turned, over the largest
 
 Pairs = Iterable[tuple[int, float]]
 
@@ -168,6 +170,19 @@ class Aberration:
     def even(self) -> tuple[bool, bool]:
         """Whether W(−px, py) is W(px, py), and whether W(px, −py) is."""
         return not self._powers[1::2].any(), not self._powers[:, 1::2].any()
+
+    def turned(self, angle: float) -> Aberration:
+        """Return it as seen from axes that are turned from x to y by an angle, rad."""
+        numbers = {noll(j): j for j in range(1, MOST + 1)}
+        turned: dict[int, float] = {}
+        for j, a in self.coefficients:
+            n, m = noll(j)
+            # a cosine becomes cos m(θ + angle), a sine the same
+            own, other = a * cos(m * angle), -a * sin(m * angle)
+            for number, value in ((j, own), (numbers[n, -m], other)):
+                turned[number] = turned.get(number, 0.0) + value
+        least = _ROUNDING * max(map(abs, turned.values()), default=0.0)
+        return Aberration(tuple((j, a) for j, a in turned.items() if abs(a) > least))
 
     @property
     def powers(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

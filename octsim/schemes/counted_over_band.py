@@ -14,6 +14,7 @@ from octsim.optics.detector import RIM, Outcome
 from octsim.optics.scene import Scene
 from octsim.schemes.band_nodes import nodes_within, to_coefficients
 from octsim.schemes.light import AccuracyStatus, Light, Optics, Options, Sampled
+from octsim.schemes.ray_trees import dropped_field
 from octsim.schemes.returned_rays import (
     FIRST_FIELD,
     LENGTH,
@@ -50,24 +51,34 @@ def sampled_spiral(
     """
     spiral, k = Spiral(optics, options, scene, focus, lengths), optics.wavenumber
     middle = float(k[-1] + k[0]) / 2
-    found = spiral.at(middle)
-    if optics.way_varies:
-        fields = _over_band(spiral, k, None, frozenset())
-    else:
-        tracks = Tracks(found.ray, found.path, found.numbers[:, np.newaxis])
-        fields = summed(spiral, tracks, k)
-    light = _middle_light(spiral, found, middle, found.segments + fields.segments)
-    return Sampled(light, k, fields.values, float(np.abs(fields.rough - fields.values).max()))
+    lights, every = [], []
+    for share in spiral.shares(_NODES if optics.way_varies else 1):
+        found = spiral.at(middle, share)
+        if optics.way_varies:
+            fields = _over_band(spiral, k, share, frozenset(), _NODES)
+        else:
+            tracks = Tracks(found.ray, found.path, found.numbers[:, np.newaxis])
+            fields = summed(spiral, tracks, k)
+        lights.append(_middle_light(spiral, found, middle, found.segments + fields.segments))
+        every.append(fields)
+    fields, light = _together(every), _all_light(lights, options)
+    rough = float(np.abs(fields.rough - fields.values).max())
+    return Sampled(light, k, fields.values, rough + light.missing)
 
 
-def _over_band(spiral: Spiral, k: Floats, only: NDArray[np.int64] | None, known: Pairs) -> Fields:
-    """Return the fields of rays at wavenumbers (K,), but of those on paths that are known."""
-    number = _NODES if only is None else _NODES_OF_PART
+def _over_band(
+    spiral: Spiral, k: Floats, only: NDArray[np.int64] | None, known: Pairs, number: int
+) -> Fields:
+    """Return the fields of rays at wavenumbers (K,), but of those on paths that are known.
+
+    The rays are all, or of some numbers; they are traced at so many nodes at least.
+    """
     if k.size <= number:
         return _one_by_one(spiral, k, only, known)
     if spiral.scene.rows_within(k[0], k[-1]) > _ROWS:
         # a table may turn between nodes that are too far apart to see it
-        return _joined([_over_band(spiral, part, only, known) for part in np.array_split(k, 2)])
+        halves = np.array_split(k, 2)
+        return _joined([_over_band(spiral, part, only, known, number) for part in halves])
     at = nodes_within(k[0], k[-1], number)
     traced = [_unknown(spiral.at(one, only), known) for one in at.tolist()]
     tracks, apart = _tracks(spiral, traced, k[-1])
@@ -75,13 +86,38 @@ def _over_band(spiral: Spiral, k: Floats, only: NDArray[np.int64] | None, known:
     parts = [whole._replace(segments=sum(one.segments for one in traced))]
     if apart.size:
         now = known | frozenset(zip(tracks.ray.tolist(), tracks.path.tolist(), strict=True))
-        halves = [_over_band(spiral, part, apart, now) for part in np.array_split(k, 2)]
+        halves = [
+            _over_band(spiral, part, apart, now, _NODES_OF_PART) for part in np.array_split(k, 2)
+        ]
         parts.append(_joined(halves))
+    return _together(parts)
+
+
+def _together(parts: list[Fields]) -> Fields:
+    """Return the fields of some rays and of others as those of all."""
     return Fields(
         sum((one.values for one in parts[1:]), parts[0].values),
         sum((one.rough for one in parts[1:]), parts[0].rough),
         sum(one.segments for one in parts),
     )
+
+
+def _all_light(parts: list[Light], options: Options) -> Light:
+    """Return the light of one share of rays after the other as that of all."""
+    light = parts[0]
+    if len(parts) > 1:
+        arrays = ("path", "amplitude", "rough_amplitude", "optical_path_length", "lengths")
+        held = {
+            name: None
+            if getattr(light, name) is None
+            else np.concatenate([getattr(one, name) for one in parts], axis=-1)
+            for name in arrays
+        }
+        outcomes = sum((one.outcomes for one in parts if one.outcomes is not None), np.int64(0))
+        segments = sum(one.segments for one in parts)
+        light = light._replace(**held, segments=segments, outcomes=outcomes)
+    assert light.outcomes is not None
+    return light._replace(missing=dropped_field(light.outcomes, options))
 
 
 def _joined(parts: list[Fields]) -> Fields:
@@ -187,10 +223,13 @@ def light_of_spiral(
     Parameters are those of `sampled_spiral`.
     """
     spiral, middle = Spiral(optics, options, scene, focus, lengths), sum(optics.band) / 2
-    found = spiral.at(middle)
-    weight = weights(optics, found.numbers[:, np.newaxis], np.array([middle]))[0]
-    ways = found.numbers[FIRST_FIELD + spiral.parts :] if lengths else None
-    return _rays(spiral, found, found.numbers[FIRST_FIELD] * weight, ways)
+    lights = []
+    for share in spiral.shares(1):
+        found = spiral.at(middle, share)
+        weight = weights(optics, found.numbers[:, np.newaxis], np.array([middle]))[0]
+        ways = found.numbers[FIRST_FIELD + spiral.parts :] if lengths else None
+        lights.append(_rays(spiral, found, found.numbers[FIRST_FIELD] * weight, ways))
+    return _all_light(lights, options)
 
 
 def _middle_light(spiral: Spiral, found: Returned, middle: float, segments: int) -> Light:

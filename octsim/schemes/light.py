@@ -188,6 +188,17 @@ class Optics(NamedTuple):
     """What else it does to rays."""
     dispersive: bool = False
     """Whether an index depends on the wavenumber."""
+    azimuth: float = 0.0
+    """Angle by which the axes that light is described in are turned from x to y, rad."""
+
+    def turned(self, angle: float) -> "Optics":
+        """Return the same, to be described in axes that are turned from x to y by an angle, rad."""
+        effects = self.effects
+        if angle == 0:
+            return self
+        if effects.aberration is not None:
+            effects = replace(effects, aberration=effects.aberration.turned(angle))
+        return self._replace(effects=effects, azimuth=angle)
 
     def detector_at(self, scene: Scene, wavenumber: float) -> Detector:
         """Return the receiver at a wavenumber, 1/µm: its angle follows the objective's index."""

@@ -18,6 +18,7 @@ from octsim.optics.rulings import rulings
 from octsim.optics.scene import Scene
 from octsim.optics.turned_rays import displacement
 from octsim.schemes.light import Optics, Options
+from octsim.schemes.ray_trees import rays_at_once
 from octsim.schemes.through_objective import passed
 from octsim.tracing.carry import AMPLITUDE
 from octsim.tracing.jones import FIELD, jones_of
@@ -96,6 +97,27 @@ class Spiral:
             self.options["min_amplitude"], wavenumber, self._tree, self._within(detector),
         )  # fmt: skip
         return self._past_objective(found, beam, detector, wavenumber)
+
+    def shares(self, nodes: int) -> list[NDArray[np.int64] | None]:
+        """Return the numbers of rays that are traced one share after the other; None is all.
+
+        Parameters
+        ----------
+        nodes : int
+            Wavenumbers at which what comes back is held together.
+        """
+        optics, rays = self.optics, self.options["rays"]
+        carried = self.parts + (len(self.scene.regions) if self.lengths else 0)
+        families = 2 if optics.effects.waist else 1
+        most = rays_at_once(
+            self.scene, optics.max_intersections, self.options["min_amplitude"],
+            families * nodes * (FIRST_FIELD + carried),
+        )  # fmt: skip
+        if rays <= most:
+            return [None]
+        detector = optics.detector
+        every = vogel_beam(rays, detector.objective_radius, detector.focus_distance).number
+        return list(np.array_split(every, int(np.ceil(rays / most))))
 
     @property
     def _tree(self) -> Callable[..., tuple[object, ...]]:

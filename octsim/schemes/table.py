@@ -52,6 +52,7 @@ class Ability(Enum):
     FIBRE_FALLOFF = "does not weigh by a falloff without an edge that depends on the wavenumber"
     WAIST = "has rays that meet in the focus"
     REFERENCE = "has no reference arm"
+    UNMIRRORED = "needs a plane through the optical axis in which the cylinders are mirrored"
 
 
 @dataclass(frozen=True)
@@ -137,7 +138,10 @@ _OF_BOTH = frozenset(
         Ability.PLATES,
     }
 )  # fmt: skip
-_OF_RAYS = _OF_BOTH | {Ability.ATTENUATION_AROUND, Ability.FALLOFF}
+_OF_RAYS = _OF_BOTH | {
+    Ability.ATTENUATION_AROUND, Ability.FALLOFF, Ability.LAYERS, Ability.CYLINDERS,
+    Ability.OFF_AXIS, Ability.AZIMUTH, Ability.ELEVATION, Ability.SHELLS, Ability.NO_CYLINDER,
+}  # fmt: skip
 
 COUNTED_RAYS = Scheme(
     name="vogel",
@@ -148,11 +152,7 @@ COUNTED_RAYS = Scheme(
     counts_rays=True,
     by_wavenumber=100.0,
     honours=_OF_RAYS
-    | {
-        Ability.ODD_ALONG,
-        Ability.FIBRE_FALLOFF,
-        Ability.WAIST,
-    },
+    | {Ability.ODD_ALONG, Ability.FIBRE_FALLOFF, Ability.WAIST, Ability.UNMIRRORED},
 )
 """The thesis's: a sunflower spiral of rays, each followed through the whole tree."""
 

@@ -17,6 +17,7 @@ from octsim.schemes.light import (
     Options,
     Sampled,
 )
+from octsim.schemes.ray_trees import dropped_field
 from octsim.schemes.reference_arm import with_reference
 from octsim.tracing.tree import trace
 
@@ -44,7 +45,7 @@ def tracer(optics: Optics, options: Options) -> LightAt:
             found.amplitude,
             np.where(found.ray % 2 == 0, 2 * found.amplitude, 0.0),
             found.optical_path_length,
-            0.0,
+            dropped_field(found.outcomes, options),
             found.segments,
             AccuracyStatus.NOT_CONTROLLED,
             found.outcomes,
@@ -71,6 +72,7 @@ def field(
         found = field_of_rays(
             light.amplitude, light.rough_amplitude, light.optical_path_length, wavenumber
         )
+        found = found._replace(error=found.error + light.missing)
     share = np.ones(1, np.complex128)
     if optics.effects.vectorial:
         share = detected_fields(optics.polarisation, np.eye(2, dtype=complex)[np.newaxis])[:, 0]

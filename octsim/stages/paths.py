@@ -12,15 +12,14 @@ from octsim.config.scheme import point_cost, scheme_of
 from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
-from octsim.instrument.build import surface_names
 from octsim.stages.detections import stored_rays
 from octsim.stages.fields import stored_waves
 from octsim.stages.kept_light import stored_by_kind
+from octsim.stages.pooled_paths import PathPool
 from octsim.stages.ray_shares import SAMPLES, ray_shares, strongest_first
 from octsim.stages.swept_light import swept_diameters
 from octsim.stages.wave_shares import NAMES, wave_shares
 from octsim.stages.workload import points_per_block
-from octsim.tracing.light_paths import path_name
 
 _NOT_THERE = {
     "field_amplitude": 0.0, "field_phase": np.nan, "mean_optical_path_length": np.nan,
@@ -65,32 +64,33 @@ def light_paths(
     title = "What each light path has in the spectra"
     unnamed = Layout("paths", config, title, swept_diameters, "diameter")
     stored = stored_by_kind(unnamed, detected, fields)
-    codes = _ray_codes(unnamed, stored["rays"]) if "rays" in stored else np.empty(0, np.int64)
-    names = surface_names(config)
-    called = [path_name(code, names) for code in codes.tolist()]
+    pool = PathPool()
+    found = "rays" in stored
+    codes = _ray_codes(unnamed, stored["rays"], pool) if found else np.empty(0, np.int64)
+    called = [pool.name(code) for code in codes.tolist()]
     terms = NAMES if "waves" in stored else ()
     named: dict[str, Coordinate] = {
         "path": ("path", np.array([*called, *terms], str)),
         "path_code": ("path", np.append(codes, -1 - np.arange(len(terms)))),
     }
     layout = Layout("paths", config, title, lambda of: named | swept_diameters(of), "diameter")
-    return Stream(layout, _shared(layout, stored, codes))
+    return Stream(layout, _shared(layout, stored, codes, pool))
 
 
-def _ray_codes(layout: Layout, stored: Stored) -> NDArray[np.int64]:
+def _ray_codes(layout: Layout, stored: Stored, pool: PathPool) -> NDArray[np.int64]:
     """Return the codes of all paths of rays, the strongest at mid-band first."""
 
     def parts() -> Iterator[tuple[xr.Dataset, float]]:
         for at, span in layout.blocks(_block_points):
             if scheme_of(at.config).light == "rays":
                 k = at.config.spectrum.wavenumbers()
-                yield stored.part(at, span), (k[0] + k[-1]) / 2
+                yield pool.pooled(at.config, stored.part(at, span)), (k[0] + k[-1]) / 2
 
     return strongest_first(parts())
 
 
 def _shared(
-    layout: Layout, stored: Mapping[str, Stored], codes: NDArray[np.int64]
+    layout: Layout, stored: Mapping[str, Stored], codes: NDArray[np.int64], pool: PathPool
 ) -> Iterator[Part]:
     paths = layout.sizes["path"]
     for at, span in layout.blocks(_block_points):
@@ -99,7 +99,8 @@ def _shared(
         found: list[dict[str, NDArray[Any]]]
         if kind == "rays":
             place = slice(0, codes.size)
-            found = [ray_shares(light, codes, k[0], step) for light in stored_rays(part)]
+            rays = stored_rays(pool.pooled(at.config, part))
+            found = [ray_shares(light, codes, k[0], step) for light in rays]
         else:
             place = slice(codes.size, paths)
             found = [wave_shares(waves, k[0], step) for waves in stored_waves(part)]

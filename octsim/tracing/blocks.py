@@ -13,13 +13,7 @@ from numpy.typing import NDArray
 
 from octsim.optics.beam import crossing
 from octsim.optics.interface import Vector, cos_transmitted_squared, reflect, refract, unit
-from octsim.optics.intersection import (
-    cross_cylinder,
-    cylinder_normal,
-    enter_cylinder,
-    meet_plane,
-    plane_normal,
-)
+from octsim.optics.intersection import plane_normal
 from octsim.optics.turned_rays import AnyBeam
 from octsim.tracing.faces import Faces, Kind, is_flat
 from octsim.tracing.lanes import (
@@ -39,31 +33,9 @@ from octsim.tracing.lanes import (
     position,
     turn,
 )
+from octsim.tracing.meet import axis_of, meet, normal_from
 
 NOWHERE = -1
-
-
-@register_jitable(forceinline=True)
-def meet(faces: Faces, f: int, block: Block, n: int, distance: Lanes, cos_i: Lanes) -> None:
-    """Find the distance of n lanes to a face, and the cosine of incidence there."""
-    kind, shape = faces.kind[f], faces.shape[f]
-    if is_flat(kind):
-        height, above = shape[0], kind == Kind.PLANE_FROM_ABOVE
-        for i in range(n):
-            distance[i] = meet_plane(height, above, position(block, i), direction(block, i))
-            cos_i[i] = abs(block[VZ + i])
-        return
-    x, z, radius = shape[0], shape[1], shape[2]
-    if kind == Kind.CYLINDER_FROM_OUTSIDE:
-        for i in range(n):
-            distance[i], cos_i[i] = enter_cylinder(
-                x, z, radius, position(block, i), direction(block, i)
-            )
-    else:
-        for i in range(n):
-            distance[i], cos_i[i] = cross_cylinder(
-                x, z, radius, position(block, i), direction(block, i)
-            )
 
 
 @register_jitable(forceinline=True)
@@ -85,7 +57,7 @@ def meet_nearest(
     begin, end = faces.first[departure], faces.first[departure + 1]
     if begin < end:
         f = faces.next_face[begin]
-        meet(faces, f, block, n, distance, cos_i)
+        meet(faces, begin, block, n, distance, cos_i)
         for i in range(n):
             face[i] = f if distance[i] < np.inf else NOWHERE
     else:
@@ -93,7 +65,7 @@ def meet_nearest(
             face[i] = NOWHERE
     for choice in range(begin + 1, end):
         f = faces.next_face[choice]
-        meet(faces, f, block, n, to_face, cos_there)
+        meet(faces, choice, block, n, to_face, cos_there)
         for i in range(n):
             nearer = to_face[i] < distance[i]
             distance[i] = to_face[i] if nearer else distance[i]
@@ -206,10 +178,10 @@ def split(
         for i in range(n):
             leave(met, i, normal, n_i, n_t, cos_i[i], cos_t[i], beyond)
     else:
-        x, z = shape[0], shape[1]
+        axis = axis_of(faces, f)
         curvature = (1.0 if kind == Kind.CYLINDER_FROM_OUTSIDE else -1.0) / shape[2]
         for i in range(n):
-            normal = cylinder_normal(x, z, curvature, position(met, i))
+            normal = normal_from(axis, curvature, position(met, i))
             leave(met, i, normal, n_i, n_t, cos_i[i], cos_t[i], beyond)
             # far from where z = 0 the normal of a thin cylinder is not quite a unit vector
             turn(met, i, unit(direction(met, i)))

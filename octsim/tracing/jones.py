@@ -7,7 +7,7 @@ from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from octsim.optics.interface import Vector, unit
-from octsim.optics.intersection import cylinder_normal, plane_normal
+from octsim.optics.intersection import plane_normal
 from octsim.optics.vectorial import (
     Field,
     coefficients,
@@ -21,6 +21,7 @@ from octsim.tracing.carry import Carry
 from octsim.tracing.faces import Faces, Kind, is_flat
 from octsim.tracing.kernel import make_tree
 from octsim.tracing.lanes import CARRIED, LANES, Block, Lanes, direction, position
+from octsim.tracing.meet import axis_of, normal_from
 
 SIZE = 12
 """Numbers of a ray: x, y and z of its field, of each the light that went in along x and y, of each
@@ -104,10 +105,10 @@ def split(
         for i in range(n):
             _split_lane(n_i, n_t, met, i, normal, cos_i[i], beyond)
     else:
-        x, z = shape[0], shape[1]
+        axis = axis_of(faces, f)
         curvature = (1.0 if kind == Kind.CYLINDER_FROM_OUTSIDE else -1.0) / shape[2]
         for i in range(n):
-            normal = unit(cylinder_normal(x, z, curvature, position(met, i)))
+            normal = unit(normal_from(axis, curvature, position(met, i)))
             _split_lane(n_i, n_t, met, i, normal, cos_i[i], beyond)
 
 

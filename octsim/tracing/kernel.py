@@ -32,6 +32,8 @@ from octsim.tracing.lanes import (
     direction,
     position,
 )
+from octsim.tracing.meet import reflects
+from octsim.tracing.path_codes import code_behind, note_step, path_code
 
 OUTCOMES = len(Outcome)
 LENGTH, AT_X, AT_Y, AT_VX, AT_VY, FIRST_CARRIED = range(6)
@@ -89,8 +91,9 @@ def _wait(waiting: _Waiting, top: int, lanes: int, departure: int, meetings: int
 @register_jitable(forceinline=True)
 def _arrive(
     faces: Faces, detector: Detector, within: Acceptance, focus: float, block: Block, n: int,
-    code: int, arrived: _Arrived, count: int, outcomes: NDArray[np.int64], to_focus: Lanes,
-    at_focus: Lanes, at_objective: Lanes, carried: int, move: Callable[..., None],
+    code: int, steps: NDArray[np.int64], meetings: int, arrived: _Arrived, count: int,
+    outcomes: NDArray[np.int64], to_focus: Lanes, at_focus: Lanes, at_objective: Lanes,
+    carried: int, move: Callable[..., None],
 ) -> tuple[_Arrived, int]:  # fmt: skip
     """Note which of n lanes on their way to the objective are accepted.
 
@@ -109,7 +112,8 @@ def _arrive(
             rest = to_fibre(detector, faces.n_objective, to_focus[i], at_focus[i])
             move(faces, 0, block, i, to_focus[i], block, i)
             labels, numbers = arrived.labels[count], arrived.numbers[count]
-            labels[0], labels[1] = int(block[RAY + i]), code
+            labels[0] = int(block[RAY + i])
+            labels[1] = path_code(faces, steps, meetings, code)
             numbers[LENGTH] = block[PATH + i] + rest
             numbers[AT_X] = block[X + i] + to_focus[i] * block[VX + i]
             numbers[AT_Y] = block[Y + i] + to_focus[i] * block[VY + i]
@@ -158,6 +162,7 @@ def make_tree(carry: Carry) -> Callable[..., tuple[Any, ...]]:
         distance, cos_i, cos_t = np.empty(LANES), np.empty(LANES), np.empty(LANES)
         cos_met, wanted = np.empty(LANES), np.empty(LANES, np.bool_)
         face, chosen = np.empty(LANES, np.int64), np.empty(LANES, np.uint32)
+        steps = np.empty(max_intersections + 1, np.int64)
 
         for first in range(0, rays, LANES):
             count = min(LANES, rays - first)
@@ -171,10 +176,11 @@ def make_tree(carry: Carry) -> Callable[..., tuple[Any, ...]]:
                     top -= 1
                     continue
                 segments += n
+                note_step(faces, steps, m, code)
                 if faces.to_objective[d]:
                     arrived, count_arrived = _arrive(
-                        faces, detector, within, focus, block, n, code, arrived, count_arrived,
-                        outcomes, distance, cos_i, cos_t, carried, move,
+                        faces, detector, within, focus, block, n, code, steps, m, arrived,
+                        count_arrived, outcomes, distance, cos_i, cos_t, carried, move,
                     )  # fmt: skip
                     continue
                 meet_nearest(faces, d, block, n, face, distance, cos_i, cos_met, cos_t)
@@ -194,9 +200,11 @@ def make_tree(carry: Carry) -> Callable[..., tuple[Any, ...]]:
                     returned, through = sift(
                         met, beyond, count, total, cos_t, min_amplitude, wanted, carried, strength
                     )
+                    if not reflects(faces, f):
+                        returned = 0
                     outcomes[Outcome.TOTALLY_REFLECTED] += total
                     outcomes[Outcome.FAINT] += 2 * count - total - through - returned
-                    here = code * faces.kind.size + 2 * faces.surface[f]
+                    here = code_behind(faces, code, f)
                     top = _wait(waiting, top, returned, faces.after_reflection[f], m + 1, here)
                     top = _wait(waiting, top, through, faces.after_transmission[f], m + 1, here + 1)
                 outcomes[Outcome.ESCAPED] += escaped

@@ -1,19 +1,24 @@
 """Light paths: which surfaces light meets, in order, and whether it is reflected at each.
 
 A path's code is a number whose digits, in base 2 S for S surfaces, are its meetings: twice the
-surface's number, plus one if the light goes through. A leading 1 keeps the zeros.
+surface's number, plus one if the light goes through. A leading 1 keeps the zeros. Those of general
+scenes are counted instead (`octsim.tracing.path_codes`).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 import numpy as np
-from numba.extending import register_jitable
+from numba.extending import overload, register_jitable
 from numpy.typing import NDArray
 
-from octsim.tracing.faces import Faces
+from octsim.optics.scene import Scene
+from octsim.tracing.faces import AnyFaces, Faces, faces_at
+from octsim.tracing.path_codes import steps_of_code
+from octsim.tracing.path_counts import MOST_MEETINGS
 
-LONGEST = 31
-"""Most meetings that a code has room for."""
+LONGEST = MOST_MEETINGS
+"""Most meetings of a path that has a code."""
 
 
 def path_name(code: int, surfaces: Sequence[str]) -> str:
@@ -38,12 +43,25 @@ def path_name(code: int, surfaces: Sequence[str]) -> str:
     return " ".join(reversed(meetings))
 
 
-@register_jitable
-def steps_of(faces: Faces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]) -> int:
-    """Read a path's code into the faces that it meets, and how it leaves each; return how many.
+def names_of_paths(scene: Scene, wavenumber: float, codes: Iterable[int]) -> list[str]:
+    """Return the names of the light paths of some codes in a scene, as ``glass T axon R glass T``.
 
-    `face` and `through` have room for `LONGEST` meetings.
+    The scene's topology has them; the wavenumber is any that its materials are known at, 1/µm.
     """
+    faces, names = faces_at(scene, wavenumber), scene.surface_names
+    if not isinstance(faces, AnyFaces) or not len(faces.counts):
+        return [path_name(code, names) for code in codes]
+    said = [name if len(name) == 1 else f"{name} " for name in names]
+    return [
+        " ".join(said[step // 4] + "RT"[step % 2] for step in steps_of_code(faces, code))
+        for code in codes
+    ]
+
+
+@register_jitable
+def _by_digits(
+    faces: Faces | AnyFaces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]
+) -> int:
     base, num = faces.kind.size, 0
     rest = code
     while rest > 1:
@@ -59,3 +77,49 @@ def steps_of(faces: Faces, code: int, face: NDArray[np.int64], through: NDArray[
         after = faces.after_transmission if through[m] else faces.after_reflection
         departure = after[face[m]]
     return num
+
+
+@register_jitable
+def _by_counts(
+    faces: AnyFaces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]
+) -> int:
+    if faces.counts.shape[0] == 0:
+        return _by_digits(faces, code, face, through)
+    num = 0
+    while num + 1 < faces.numbers.size and faces.numbers[num + 1] <= code:
+        num += 1
+    rest, departure = code - faces.numbers[num], 0
+    for m in range(num):
+        left, here = num - 1 - m, departure
+        for choice in range(faces.first[here], faces.first[here + 1]):
+            f = faces.next_face[choice]
+            face[m] = f
+            through[m], departure = False, faces.after_reflection[f]
+            there = faces.counts[left, departure]
+            if rest < there:
+                break
+            rest -= there
+            through[m], departure = True, faces.after_transmission[f]
+            there = faces.counts[left, departure]
+            if rest < there:
+                break
+            rest -= there
+    return num
+
+
+def steps_of(
+    faces: Faces | AnyFaces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]
+) -> int:
+    """Read a path's code into the faces that it meets, and how it leaves each; return how many.
+
+    `face` and `through` have room for `LONGEST` meetings.
+    """
+    read = _by_counts if isinstance(faces, AnyFaces) else _by_digits
+    return read(faces, code, face, through)  # type: ignore[operator]
+
+
+@overload(steps_of, strict=False)
+def _compile_steps_of(
+    faces: Any, code: Any, face: Any, through: Any  # noqa: ARG001
+) -> Callable[..., int]:  # fmt: skip
+    return _by_counts if faces.instance_class is AnyFaces else _by_digits

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from octsim.optics.beam import Beam, DisplacedBeam
 from octsim.optics.detector import Acceptance, Detector, acceptance, weight
 from octsim.optics.scene import Scene
-from octsim.tracing.faces import faces_at
+from octsim.tracing.faces import faces_at, most_meetings
 from octsim.tracing.kernel import FIRST_CARRIED, trace_amplitudes
 
 
@@ -70,10 +70,10 @@ def check_reach(scene: Scene, detector: Detector, focus: float, max_intersection
             f"focus: {focus} µm given; it must be below the focus distance, "
             f"{detector.focus_distance} µm"
         )
-    if (2 * len(scene.surfaces)) ** max_intersections >= 2**62:
+    if max_intersections > (most := most_meetings(scene)):
         raise ValueError(
             f"max_intersections: {max_intersections} given; the light paths of so many meetings "
-            f"with {len(scene.surfaces)} surfaces can't be numbered, so give less"
+            f"with {len(scene.surfaces)} surfaces can't be numbered, so give {most} or less"
         )
 
 

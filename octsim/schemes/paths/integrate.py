@@ -19,10 +19,12 @@ from octsim.optics.scene import Scene, Symmetry
 from octsim.optics.turned_rays import STRAIGHT, Straight, Turning
 from octsim.schemes.light import AccuracyStatus, Light
 from octsim.schemes.paths.aperture_tiles import images
+from octsim.schemes.paths.check_rays import CHECKS
 from octsim.schemes.paths.chebyshev import LOOK
 from octsim.schemes.paths.falloffs import Parabola, Series
-from octsim.schemes.paths.first_orders import light_misses, orders_of, steepest_sine
+from octsim.schemes.paths.first_orders import faintest, orders_of, sees_edges, steepest_sine
 from octsim.schemes.paths.kept_rays import WeightedRays, kept, room_for_nodes
+from octsim.schemes.paths.missed_light import light_misses
 from octsim.schemes.paths.progress import SPARE, PathGoal, Progress, traced
 from octsim.schemes.paths.refine import settle
 from octsim.schemes.paths.strongest import strongest_first
@@ -59,6 +61,7 @@ BUDGET = 1_000_000
 """Segments traced for one point, at most."""
 _ATTEMPTS = 4
 _PEAK_SAMPLES = 32
+_FAINT = 1e-3  # of the accuracy: amplitude below which light is followed no more
 _ONE_PATH = 0.1  # of the accuracy, that a single path may use
 _MARGIN = 0.7  # of the accuracy, that the estimate of the error may reach
 
@@ -158,10 +161,11 @@ def _integrate_all(
 @compiled()
 def _integrate(
     faces: Faces, point: Point, survey_orders: tuple[int, int], orders: tuple[int, int],
-    max_intersections: int, accuracy: float, budget: int, space: Workspace, rays: Any,
+    max_intersections: int, accuracy: float, least: float, budget: int, space: Workspace,
+    rays: Any,
 ) -> tuple[Any, ...]:  # fmt: skip
     accuracy = _MARGIN * accuracy
-    faint, segments, scale, missing, count = 1e-3 * accuracy, 0, 0.0, 0.0, 0
+    faint, segments, scale, missing, count = max(_FAINT * accuracy, least), 0, 0.0, 0.0, 0
     relative, status = _ONE_PATH * accuracy, AccuracyStatus.NOT_REACHED.value
     multiplicity = images(point.symmetric)
     for _ in range(_ATTEMPTS):
@@ -185,7 +189,10 @@ def _integrate(
             status = AccuracyStatus.REACHED.value
             break
         if faint_field > 0.1 * accuracy * scale:
-            faint *= 0.1
+            if faint <= least:
+                status = AccuracyStatus.BUDGET_SPENT.value
+                break
+            faint = max(0.1 * faint, least)
         else:
             relative *= 0.3
     return kept(rays, count), missing, segments, status
@@ -257,9 +264,17 @@ def integrate_nodes(
     middle = (low + high) / 2
     faces = faces_at(scene, middle if wavenumber is None else wavenumber)
     point = Point(symmetric, detector, focus, middle, high, falloff, lens, tables_of(symmetric))
+    survey_orders, orders = orders_of(
+        accuracy, symmetric, steepest_sine(faces, detector), sees_edges(scene)
+    )
+    # what is first followed may not be faint enough
+    least = faintest(
+        faces, point, survey_orders[0] * survey_orders[1] + CHECKS, max_intersections,
+        0.01 * _FAINT * _MARGIN * accuracy, budget,
+    )  # fmt: skip
     rays, missing, segments, status = _integrate(
-        faces, point, *orders_of(accuracy, symmetric, steepest_sine(faces, detector)),
-        max_intersections, accuracy, budget, room_for_point(), room_for_nodes(placed),
+        faces, point, survey_orders, orders, max_intersections, accuracy, least, budget,
+        room_for_point(), room_for_nodes(placed),
     )  # fmt: skip
     path, amplitude, rough_amplitude, optical_path_length, *launched = rays
     light = Light(
@@ -270,7 +285,7 @@ def integrate_nodes(
         missing,
         segments,
         AccuracyStatus.AT_AN_EDGE
-        if status == AccuracyStatus.REACHED and light_misses(scene, faces, point)
+        if status == AccuracyStatus.REACHED and light_misses(faces, point)
         else AccuracyStatus(status),
     )
     return Integrated(light, faces, tuple(launched))

@@ -286,7 +286,7 @@ def _rows(optics: Optics, found: Weighed) -> NDArray[np.complex128]:
     """Return what rays have in each detected field over their amplitudes, (C, D)."""
     if not optics.effects.vectorial:
         return found.fields[:1]
-    return jones_rows(optics.polarisation, 0.0) @ found.fields
+    return jones_rows(optics.polarisation, optics.azimuth) @ found.fields
 
 
 def _worst(statuses: Sequence[AccuracyStatus], error: float, accuracy: float) -> AccuracyStatus:

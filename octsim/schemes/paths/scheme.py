@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.base.errors import OctsimError
+from octsim.optics.mirror_plane import mirror_azimuth
 from octsim.optics.polarisation import jones_rows
 from octsim.optics.scene import Scene
 from octsim.schemes.light import Field, Light, LightAt, Optics, Options, Sampled
@@ -15,11 +17,18 @@ from octsim.schemes.reference_arm import with_reference
 def tracer(optics: Optics, options: Options) -> LightAt:
     """Return the function of scene and focus (µm) that integrates all light paths.
 
+    A scene is solved in the axes in which it is its own mirror image in the plane y = 0.
+
     Parameters
     ----------
     optics : Optics
     options : mapping
         ``accuracy``, largest error of the intensity over the largest intensity.
+
+    Raises
+    ------
+    OctsimError
+        By the function, if there are no such axes.
     """
 
     def plain(scene: Scene, focus: float) -> Light:
@@ -28,14 +37,23 @@ def tracer(optics: Optics, options: Options) -> LightAt:
             optics.max_intersections,
         )  # fmt: skip
 
-    def with_effects(scene: Scene, focus: float) -> Light | Sampled:
+    def with_effects(scene: Scene, focus: float, angle: float) -> Light | Sampled:
         find = sampled_paths if optics.sampled else light_of_paths
-        return find(optics, scene, focus, options["accuracy"], scene.attenuates)
+        return find(optics.turned(angle), scene, focus, options["accuracy"], scene.attenuates)
 
     thesis = optics.plain
 
     def light_at(scene: Scene, focus: float) -> Light | Sampled:
-        return (plain if thesis and not scene.attenuates else with_effects)(scene, focus)
+        angle = mirror_azimuth(scene)
+        if angle is None:
+            raise OctsimError(
+                "scene.cylinders: not their own mirror image in any plane through the optical "
+                "axis, as scheme paths needs; give tracing.scheme: vogel"
+            )
+        mirrored = scene.turned(angle)
+        if thesis and not scene.attenuates:
+            return plain(mirrored, focus)
+        return with_effects(mirrored, focus, angle)
 
     return light_at
 

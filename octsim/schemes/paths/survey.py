@@ -18,6 +18,7 @@ from octsim.schemes.paths.workspace import MOST_RAYS, Point, Survey, Workspace
 from octsim.tracing.faces import Faces, is_flat
 from octsim.tracing.follow import note_return
 from octsim.tracing.kernel import AT_VX, AT_VY, AT_X, AT_Y, FIRST_CARRIED, trace_amplitudes
+from octsim.tracing.light_paths import steps_of
 
 CLOSER_LOOKS = 6
 COLUMNS = 24
@@ -149,25 +150,22 @@ def only(survey: Survey, wanted: NDArray[np.bool_]) -> Survey:
 
 
 @register_jitable
-def curved(faces: Faces, code: int) -> bool:
+def curved(faces: Faces, code: int, space: Workspace) -> bool:
     """Return whether a path meets anything but planes."""
-    rest = code
-    while rest > 1:
-        for f in range(faces.kind.size):
-            if faces.surface[f] == rest % faces.kind.size // 2 and not is_flat(faces.kind[f]):
-                return True
-        rest //= faces.kind.size
+    for m in range(steps_of(faces, code, space.face, space.through)):
+        if not is_flat(faces.kind[space.face[m]]):
+            return True
     return False
 
 
 @register_jitable
-def closer(faces: Faces, point: Point, survey: Survey) -> tuple[bool, Tile]:
+def closer(faces: Faces, point: Point, survey: Survey, space: Workspace) -> tuple[bool, Tile]:
     """Return whether not all of a survey's columns met more than planes, and the part that did."""
     n, m = survey.orders
     root, along_s = survey.root, point.tables.nodes_s[LOOK, n]
     left, right = n, -1
     for p in range(survey.code.size):
-        if curved(faces, survey.code[p]):
+        if curved(faces, survey.code[p], space):
             for i in range(survey.begin[p], survey.end[p]):
                 column = survey.ray[i] // m
                 if column >= n:
@@ -218,7 +216,7 @@ def survey_aperture(
     )
     close = wide
     for _ in range(CLOSER_LOOKS):
-        edge, tile = closer(faces, point, close)
+        edge, tile = closer(faces, point, close, space)
         much = area(tile, point.symmetric) > 0.8 * area(close.root, point.symmetric)
         if not edge or (much and close.extrapolation == NEAR_AN_EDGE):
             break
@@ -238,7 +236,7 @@ def survey_aperture(
     narrowed = close.extrapolation == NEAR_AN_EDGE
     keep, also = np.empty(wide.code.size, np.bool_), np.empty(close.code.size, np.bool_)
     for p in range(wide.code.size):
-        keep[p] = narrowed and not curved(faces, wide.code[p])
+        keep[p] = narrowed and not curved(faces, wide.code[p], space)
     for p in range(close.code.size):
-        also[p] = not narrowed or curved(faces, close.code[p])
+        also[p] = not narrowed or curved(faces, close.code[p], space)
     return only(wide, keep), only(close, also), lost, segments
