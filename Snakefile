@@ -123,8 +123,10 @@ def sources(rows: tuple[Stage, ...]) -> dict[str, object]:
     if "expansion" in {row.name for row in rows}:
         # without a series the job says so at once, and nothing is calibrated for it
         return found if SERIES else {}
-    # a job of a grid says at once that it is of a single config, and no law is fitted for it
-    return {} if run.grid.varied and rows[0].beside else found
+    # a job of a grid says at once that it is of a single config, or one without a cylinder that it
+    # needs one, and no law is fitted for it
+    alone = run.grid.varied or not rows[0].serves(run)
+    return {} if alone and rows[0].beside else found
 
 
 def shares(stage: str) -> list[str]:

@@ -104,6 +104,8 @@ _RUN = (
         figures=(
             Figure("paths", "octsim.figures.paths:figure_paths",
                    "what each light path has in the spectra"),
+            Figure("scene", "octsim.figures.scene:scene_figure",
+                   "the scene to scale, with rays of its strongest light paths"),
         ),
     ),
     Stage(

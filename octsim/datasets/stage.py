@@ -72,6 +72,10 @@ class Stage:
     """The function that says, a line each, where it is not what one would want."""
     figures: tuple[Figure, ...] = ()
 
+    def serves(self, config: Config) -> bool:
+        """Return whether it has anything to say of a config's scene."""
+        return self.plates or not self.beside or bool(config.scene.cylinders)
+
     @property
     def rule(self) -> str:
         """Name of the job that makes it."""

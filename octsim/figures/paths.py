@@ -19,7 +19,7 @@ from octsim.phase.fringe_status import FringeStatus
 
 STRONGEST = 8
 """Paths that are drawn."""
-_LINES = (
+LINES = (
     (BLUE, "-"), (ORANGE, "-"), (GREEN, "-"), (VERMILION, "--"),
     (SKY, "--"), (PURPLE, "--"), (BLACK, ":"), ("0.5", ":"),
 )  # fmt: skip
@@ -37,7 +37,7 @@ def figure_paths(paths: xr.Dataset) -> Figure:
     }
     for axes, (name, text) in zip(panels, drawn.items(), strict=True):
         for number in range(shown.sizes["path"]):
-            colour, line = _LINES[number]
+            colour, line = LINES[number]
             values = shown[name].isel(path=number)
             if name == "field_amplitude":
                 values = values.where(values > 0)

@@ -81,7 +81,8 @@ def _detected(spiral: Spiral, numbers: Floats) -> tuple[NDArray[np.bool_], NDArr
     """
     optics = spiral.optics
     place = np.hypot(numbers[X], numbers[Y]) / optics.detector.radius
-    rim = np.sqrt(numbers[RIM_SQUARED]) / RIM
+    # interpolation can put what is near the axis a little below zero
+    rim = np.sqrt(np.maximum(numbers[RIM_SQUARED], 0.0)) / RIM
     reach = optics.effects.falloff.reach(optics.band[0])
     inside = (place < reach).all(axis=0) & (rim <= 1).all(axis=0)
     at_edge = _meets(place, reach) | _meets(place, 1.0) | _meets(rim, 1.0)

@@ -16,8 +16,8 @@ from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.phase.by_config import estimator_of
 from octsim.phase.estimators.visible import Fringe, fringe_at, is_elsewhere
 from octsim.phase.fringe_status import WITH_PHASE, FringeStatus, doubts_of
+from octsim.phase.hiding_error import hiding_error
 from octsim.phase.transform import fourier_components, optical_depths, rounding_level
-from octsim.schemes.light import AccuracyStatus
 from octsim.stages.workload import points_per_block
 
 
@@ -101,8 +101,7 @@ def _fringe(config: Config, part: xr.Dataset, magnitude: NDArray[np.float64]) ->
     """Look for the fringe of spectra whose components' magnitudes (D, C) are known."""
     k = config.spectrum.wavenumbers()
     depth = config.swept_group_index * part["diameter"].values
-    controlled = part["accuracy_status"].values != AccuracyStatus.NOT_CONTROLLED
-    error = np.where(controlled, part["intensity_error"].values, 0.0)
+    error = hiding_error(part["intensity_error"].values, part["accuracy_status"].values)
     found = fringe_at(part["intensity"].values, k, depth, error)
     if not by_components(config):
         return found

@@ -95,7 +95,7 @@ def _make(
             _stream(row, work, job, config, sources, points)
         return
     single = without_grid(config, row.name)
-    if not (row.plates or config.scene.cylinders):
+    if not row.serves(config):
         raise ConfigError(
             f"scene.cylinders: [] given, but {row.name} needs a cylinder; ask for it in a config "
             "with one"

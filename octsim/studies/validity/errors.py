@@ -11,6 +11,7 @@ from octsim.phase.derivatives import wrapped
 from octsim.phase.estimators.sinusoid import fit_sinusoid
 from octsim.phase.estimators.visible import fringe_at
 from octsim.phase.fringe_status import WITH_PHASE, FringeStatus
+from octsim.phase.hiding_error import hiding_error
 from octsim.phase.local_slopes import local_slope
 from octsim.schemes.light import AccuracyStatus
 
@@ -72,9 +73,8 @@ def seen(instrument: Instrument, window: Window) -> Seen:
     middle, depth = series[0][1:2], index * window.diameter[1:2]
     worst = max(points.values(), key=lambda point: point.status)
     error = max(point.error for point in points.values())
-    # counted rays estimate no error
-    certain = error if worst.status != AccuracyStatus.NOT_CONTROLLED else 0.0
-    fringe = FringeStatus(int(fringe_at(middle, k, depth, np.array([certain])).status[0]))
+    hiding = hiding_error(np.array([error]), np.array([worst.status]))
+    fringe = FringeStatus(int(fringe_at(middle, k, depth, hiding).status[0]))
     if fringe not in WITH_PHASE:
         shape = middle[0] / middle[0].mean()
         return Seen(np.full((2, 2), np.nan), np.nan, np.nan, shape, error, fringe, worst.status)
