@@ -178,6 +178,12 @@ def _sizes(config: Config) -> Iterator[str]:
                 f"{key}.shells: {format_length(thick)} thick together, but the radius by {name} is "
                 f"{format_length(diameter / 2)}; give thinner shells or a larger diameter"
             )
+        below = {one.medium for one in scene.layers[: scene.host + 1]}
+        if cylinder.elevation and len(below) == 1:
+            yield (
+                f"{key}.elevation: given, but nothing is below it but {scene.host_medium}, in which "
+                "it is, so that it would end at no plane; give 0 deg, or another layer below"
+            )
         layer = scene.layers[scene.host]
         name, diameter = own or largest
         top = scene.gap_of(cylinder) + diameter

@@ -115,8 +115,9 @@ class Cylinder:
 
     def mirrored(self, *, x: bool) -> "Cylinder":
         """Return it as seen in the plane x = 0, or in y = 0."""
-        place = {"x": -self.x} if x else {"elevation": -self.elevation}
-        return replace(self, azimuth=-self.azimuth, **place)
+        if x:
+            return replace(self, x=-self.x, azimuth=-self.azimuth)
+        return replace(self, azimuth=-self.azimuth, elevation=-self.elevation)
 
 
 @dataclass(frozen=True)
@@ -160,6 +161,8 @@ class Scene:
 
     objective: Region
     surfaces: tuple[Surface, ...]
+    unseen_meetings: int = 0
+    """Meetings of each light path with a plane that is none; they do not count."""
 
     @property
     def regions(self) -> tuple[Region, ...]:
