@@ -1,8 +1,8 @@
 r"""A slow, literal tracer of any scene, with every effect of `literal_effects`: an oracle.
 
 A ray knows where it is: in which layer, in which cylinder there, and how many of its walls are
-around it. What it can meet next are the planes of its layer and the walls next to it; what is beyond
-a plane is found from the place alone: which walls are around that point, if the layer beyond is the
+around it. What it can meet next are the planes of its layer and the walls next to it; what is
+beyond a plane is found from the place alone: which walls are around it, if that layer is the
 cylinders'. A wall or plane with one medium on both sides, by its name, is passed as if it were not
 there.
 

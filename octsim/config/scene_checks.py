@@ -181,8 +181,8 @@ def _sizes(config: Config) -> Iterator[str]:
         below = {one.medium for one in scene.layers[: scene.host + 1]}
         if cylinder.elevation and len(below) == 1:
             yield (
-                f"{key}.elevation: given, but nothing is below it but {scene.host_medium}, in which "
-                "it is, so that it would end at no plane; give 0 deg, or another layer below"
+                f"{key}.elevation: given, but below it is nothing but {scene.host_medium}, as "
+                "around it, so that it would end at no plane; give 0 deg, or another layer below"
             )
         layer = scene.layers[scene.host]
         name, diameter = own or largest
