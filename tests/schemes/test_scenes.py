@@ -16,10 +16,13 @@ from octsim.instrument.instrument import Instrument
 from octsim.optics.beam import vogel_beam
 from octsim.optics.detector import Outcome
 from octsim.optics.scene import Symmetry
+from octsim.tracing.carry import AMPLITUDE
 from octsim.tracing.faces import faces_at, most_meetings
-from octsim.tracing.light_paths import names_of_paths
+from octsim.tracing.kernel import FIRST_CARRIED, LENGTH
+from octsim.tracing.light_paths import LONGEST, names_of_paths, steps_of
 from octsim.tracing.path_codes import steps_of_code
-from octsim.tracing.tree import trace
+from octsim.tracing.path_rays import make_path_tracer
+from octsim.tracing.tree import arrivals, trace
 
 pytestmark = pytest.mark.filterwarnings("ignore::octsim.base.errors.OctsimWarning")
 DIAMETER, FOCUS = 1.4, 0.877
@@ -166,6 +169,10 @@ def test_codes_of_paths_are_those_of_no_other() -> None:
     faces = faces_at(scene, 8.0)
     steps = [tuple(steps_of_code(faces, code)) for code in range(3000)]  # type: ignore[arg-type]
     assert len(set(steps)) == 3000
+    face, through = np.empty(LONGEST, np.int64), np.empty(LONGEST, np.bool_)
+    for code in range(0, 3000, 7):
+        meetings = steps_of(faces, code, face, through)
+        assert tuple((2 * face + through)[:meetings].tolist()) == steps[code]
     assert [*map(len, steps)] == sorted(map(len, steps))
     assert most_meetings(scene) >= 30
 
@@ -222,3 +229,17 @@ def test_a_scene_has_the_symmetry_of_its_cylinders(
 ) -> None:
     config = load_config(of(*({**NEURON, **one} for one in (swept, *others))))
     assert scene_of(config, DIAMETER).symmetry == expected
+
+
+def test_rays_of_one_light_path_are_those_of_the_tree() -> None:
+    shell = {**NEURON, "elevation": "4 deg", "shells": [MYELIN]}
+    config = load_config(of(shell, refractive_index={"myelin": 1.44}))
+    scene, detector = scene_of(config, DIAMETER), detector_of(config)
+    beam = vogel_beam(300, detector.objective_radius, detector.focus_distance)
+    found = arrivals(scene, beam, detector, FOCUS, 9)
+    trace_path, faces = make_path_tracer(AMPLITUDE), faces_at(scene, 8.0)
+    for code in np.unique(found.path).tolist():
+        rays = found.path == code
+        numbers = trace_path(faces, code, beam, detector, FOCUS)[:, found.ray[rays]]
+        assert (numbers[LENGTH] == found.optical_path_length[rays]).all()
+        assert (numbers[FIRST_CARRIED] == found.carried[0, rays]).all()
