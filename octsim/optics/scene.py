@@ -61,11 +61,6 @@ class Plane:
         """Its shape in numbers: height, µm."""
         return (self.height,)
 
-    @property
-    def symmetry(self) -> Symmetry:
-        """Its symmetry."""
-        return Symmetry(x=True, y=True)
-
 
 @dataclass(frozen=True)
 class Cylinder:
@@ -108,11 +103,6 @@ class Cylinder:
         place = self.x, self.z, self.radius
         return place if self.along_y else (*place, *self.axis)
 
-    @property
-    def symmetry(self) -> Symmetry:
-        """Its symmetry."""
-        return Symmetry(x=self.azimuth == 0 and self.x == 0, y=self.along_y)
-
     def mirrored(self, *, x: bool) -> "Cylinder":
         """Return it as seen in the plane x = 0, or in y = 0."""
         if x:
@@ -145,11 +135,6 @@ class PlanePart:
     def row(self) -> tuple[float, ...]:
         """Its shape in numbers: height, µm."""
         return (self.height,)
-
-    @property
-    def symmetry(self) -> Symmetry:
-        """Its symmetry; that of the cylinders that end there is theirs."""
-        return Symmetry(x=True, y=True)
 
 
 Surface = Plane | PlanePart | Cylinder
