@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from dense_waves import _RIGHT, Beam, Dense, Rules, _clenshaw_curtis, _contour_end, outgoing
 from numpy.typing import NDArray
-from scipy.special import hankel1, h1vp, jv, jvp
+from scipy.special import h1vp, hankel1, jv, jvp
 
 Array = NDArray[Any]
 

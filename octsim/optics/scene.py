@@ -122,6 +122,12 @@ class Cylinder:
             z=self.z + along * math.tan(self.elevation), azimuth=azimuth, elevation=elevation,
         )  # fmt: skip
 
+    def mirrored(self, *, x: bool) -> "Cylinder":
+        """Return it as seen in the plane x = 0, or in y = 0."""
+        if x:
+            return replace(self, x=-self.x, azimuth=-self.azimuth)
+        return replace(self, azimuth=-self.azimuth, elevation=-self.elevation)
+
 
 @dataclass(frozen=True)
 class PlanePart:
@@ -166,6 +172,8 @@ class Scene:
 
     objective: Region
     surfaces: tuple[Surface, ...]
+    unseen_meetings: int = 0
+    """Meetings of each light path with a plane that is none; they do not count."""
 
     @property
     def regions(self) -> tuple[Region, ...]:

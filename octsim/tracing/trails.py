@@ -1,4 +1,4 @@
-"""The places that rays of a light path come by, for pictures: followed as they are, not compiled."""
+"""The places that rays of a light path come by, for pictures: followed by code as it is."""
 
 from functools import cache
 
@@ -13,13 +13,12 @@ from octsim.tracing.follow import follow_room, walk
 from octsim.tracing.lanes import CARRIED, LANES, RAY, Block, Lanes, X, direction, position
 from octsim.tracing.light_paths import LONGEST, steps_of
 
+Array = NDArray[np.float64]
 _COUNT, _PLACES = 1, 2
 """Numbers behind the amplitude: how many places there are, and their coordinates."""
 
 
-def trails(
-    faces: Faces, code: int, beam: Beam, focus: float, height: float
-) -> NDArray[np.float64]:
+def trails(faces: Faces, code: int, beam: Beam, focus: float, height: float) -> Array:
     """Return the places (N, V, 3) of rays on a light path, from a height to that height, µm.
 
     Parameters
@@ -60,9 +59,9 @@ def trails(
     return found
 
 
-def _at(here: NDArray[np.float64], along: NDArray[np.float64], height: float) -> NDArray[np.float64]:
+def _at(here: Array, along: Array, height: float) -> Array:
     """Return where a line is at a height."""
-    place: NDArray[np.float64] = here + (height - here[2]) / along[2] * along
+    place: Array = here + (height - here[2]) / along[2] * along
     return place
 
 

@@ -1,4 +1,4 @@
-"""The rays of a picture are detected ones of the strongest light paths, spread over the aperture."""
+"""The rays of a picture are detected ones of the strongest light paths, spread out."""
 
 import numpy as np
 import pytest
@@ -26,9 +26,10 @@ def test_rays_of_the_strongest_paths_return_to_the_focus(scheme: str) -> None:
 
 
 def test_paths_of_a_general_scene_have_names_that_read() -> None:
+    shells = [{"medium": "myelin", "thickness": "0.2 um"}]
     scene = {
         "refractive_index": {"myelin": 1.44},
-        "cylinders": [{"medium": "neuron", "shells": [{"medium": "myelin", "thickness": "0.2 um"}]}],
+        "cylinders": [{"medium": "neuron", "shells": shells}],
     }
     drawn = drawn_rays(load_config({"scene": scene}), 1.4, 0.8824, -1.0, paths=2)
     assert "glass T myelin R glass T" in {path.name for path in drawn}

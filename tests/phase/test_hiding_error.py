@@ -1,4 +1,4 @@
-"""A fringe has to be above an error that is estimated, and above chance where there is nothing else."""
+"""A fringe has to be above an estimated error, and above chance where there is nothing else."""
 
 import numpy as np
 

@@ -46,7 +46,8 @@ class Lights(NamedTuple):
 
 class Several(NamedTuple):
     """What is collected of cylinders, not over the norm yet: T, near sides and far sides, and what
-    it took."""
+    it took.
+    """
 
     terms: Array
     """(3, 2, K)."""

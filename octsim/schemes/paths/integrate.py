@@ -19,8 +19,8 @@ from octsim.optics.scene import Scene, Symmetry
 from octsim.optics.turned_rays import STRAIGHT, Straight, Turning
 from octsim.schemes.light import AccuracyStatus, Light
 from octsim.schemes.paths.aperture_tiles import images
-from octsim.schemes.paths.check_rays import CHECKS
 from octsim.schemes.paths.chebyshev import LOOK
+from octsim.schemes.paths.check_rays import CHECKS
 from octsim.schemes.paths.falloffs import Parabola, Series
 from octsim.schemes.paths.first_orders import faintest, orders_of, sees_edges, steepest_sine
 from octsim.schemes.paths.kept_rays import WeightedRays, kept, room_for_nodes
