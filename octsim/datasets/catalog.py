@@ -255,6 +255,17 @@ _BESIDE = (
         ),
     ),
     Stage(
+        "scenes", "octsim.studies.scenes.study:scenes",
+        "Compare scenes about the configured one: myelin, membranes, neighbours, a tilt, a cover",
+        reads=(*_COMPARED, "beam", "polarisation", "interferometer"), after=("focus_law",),
+        beside=True,
+        summary="octsim.studies.scenes.study:summary",
+        figures=(
+            Figure("scenes", "octsim.figures.scenes:scenes_figure",
+                   "what myelin, membranes, neighbours, a tilt and a cover glass do to the slope"),
+        ),
+    ),
+    Stage(
         "design", "octsim.studies.design.study:design",
         "Search fill, focus, aperture and band for the least error of an expansion",
         # by scheme fullwave, whatever the run's

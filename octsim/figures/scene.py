@@ -36,9 +36,7 @@ def scene_figure(paths: xr.Dataset) -> Figure:
         axes.plot(x, z, color="0.2", linewidth=0.8)
         # names of nested lines begin at other places of them
         at = (_NAME_EVERY * number) % x.size if x.size > 2 else 0
-        axes.annotate(
-            name, (x[at], z[at]), textcoords="offset points", xytext=(3, 3), fontsize=8
-        )
+        axes.annotate(name, (x[at], z[at]), textcoords="offset points", xytext=(3, 3), fontsize=8)
     drawn = drawn_rays(config, diameter, focus, bottom)
     # the faintest first, so that those that matter are above them
     for number, path in reversed(list(enumerate(drawn))):

@@ -74,8 +74,9 @@ def drawn_rays(
 
 def _fields(found: Returned, weight: NDArray[np.float64], k: float) -> NDArray[np.complex128]:
     """Return what each ray adds to the first of the detected fields, (D,)."""
-    phase: NDArray[np.complex128] = np.exp(1j * k * found.numbers[LENGTH])
-    return found.numbers[FIRST_FIELD] * weight * phase
+    phase = np.exp(1j * k * found.numbers[LENGTH])
+    field: NDArray[np.complex128] = found.numbers[FIRST_FIELD] * weight * phase
+    return field
 
 
 def _spread(beam: Beam, there: NDArray[np.int64], rays: int) -> Beam:
@@ -83,4 +84,7 @@ def _spread(beam: Beam, there: NDArray[np.int64], rays: int) -> Beam:
     near = there[np.argsort(np.abs(beam.vy[there]), kind="stable")][: 3 * rays]
     along = near[np.argsort(beam.vx[near], kind="stable")]
     chosen = along[np.unique(np.linspace(0, along.size - 1, rays).round().astype(int))]
-    return Beam(*(values[chosen] for values in beam[:4]), np.arange(chosen.size))
+    return Beam(
+        beam.vx[chosen], beam.vy[chosen], beam.vz[chosen], beam.amplitude[chosen],
+        np.arange(chosen.size),
+    )  # fmt: skip

@@ -1,0 +1,141 @@
+"""The scenes that are compared: the configured one, and one thing in it varied at a time."""
+
+from collections.abc import Iterator, Mapping
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+from octsim.base.errors import ConfigError
+from octsim.config.checks import impossible
+from octsim.config.derive import by_light_paths, by_waves, counting_rays, merge, validated
+from octsim.config.models import Config
+from octsim.config.units import format_length
+from octsim.studies.effects.overlays import Overlay, of_cylinder, shell
+
+AS_CONFIGURED = "as configured"
+SCHEMES = ("vogel", "paths", "fullwave")
+"""In the dataset's order."""
+_BY: Mapping[str, Any] = {"vogel": counting_rays, "paths": by_light_paths, "fullwave": by_waves}
+_MYELIN, _MEMBRANE, _OF_SHELL = 1.44, 1.46, 100
+_THICKNESSES = (10, 20, 50, 100, 200, 300)  # nm
+_INDICES = (1.40, 1.42, 1.44, 1.46, 1.48)
+_MEMBRANES = (3, 5, 8)  # nm
+_NEIGHBOURS = (0, 20, 50, 100, 200, 500, 1000, 2000)  # nm
+_ELEVATIONS = (0.5, 1.0, 2.0, 5.0)  # deg
+_COVERS = (3, 5, 10, 20)  # µm
+
+
+class CaseStatus(IntEnum):
+    """Whether a case is measured by a scheme, and why not."""
+
+    MEASURED = 0
+    NOT_BY_THIS_SCHEME = 1
+    """The scheme can't do this scene; another of the dataset's may."""
+
+
+class Case(NamedTuple):
+    """One scene, by each scheme that can do it."""
+
+    quantity: str
+    """What is varied; `AS_CONFIGURED` of the first."""
+    value: float
+    """How much of it there is; 0 is none, or of an index that of what is around."""
+    unit: str
+    by: tuple[Config | None, ...]
+    """By each of `SCHEMES`; None where that can't."""
+
+    @property
+    def name(self) -> str:
+        """What tells it from the others."""
+        if self.quantity == AS_CONFIGURED:
+            return self.quantity
+        return f"{self.quantity} {self.value:g} {self.unit}".strip()
+
+
+def cases(config: Config) -> list[Case]:
+    """Return the scenes about a plain config that are possible.
+
+    Raises
+    ------
+    ConfigError
+        If nothing in the config's scene is a cylinder that is swept.
+    """
+    if of_cylinder()(config) is None:
+        raise ConfigError(
+            "scene.cylinders: nothing in it is swept, but scenes varies what is around a cylinder "
+            "that is; leave the diameter of one out"
+        )
+    first = Case(AS_CONFIGURED, 0.0, "", _by_each(config, {}))
+    varied = (
+        Case(quantity, value, unit, _by_each(config, overlay))
+        for quantity, value, unit, overlay in _varied(config)
+    )
+    return [first, *(case for case in varied if any(case.by))]
+
+
+def _by_each(config: Config, overlay: Overlay) -> tuple[Config | None, ...]:
+    return tuple(_possible(by(config), overlay) for by in _BY.values())
+
+
+def _possible(config: Config, overlay: Overlay) -> Config | None:
+    """Return a config with an overlay, if it and its scheme can be so."""
+    try:
+        other = validated(merge(config.to_dict(), overlay))
+    except ConfigError:
+        return None
+    return None if any(impossible(other)) else other
+
+
+def _varied(config: Config) -> Iterator[tuple[str, float, str, Overlay]]:
+    for quantity, index, thicknesses in (
+        ("myelin of n 1.44,", _MYELIN, _THICKNESSES),
+        ("membrane of n 1.46,", _MEMBRANE, _MEMBRANES),
+    ):
+        for thickness in thicknesses:
+            laid = shell("sheath", index, f"{thickness} nm")(config)
+            yield from _laid(quantity, thickness, "nm", laid)
+    for index in _INDICES:
+        laid = shell("sheath", index, f"{_OF_SHELL} nm")(config)
+        yield from _laid(f"shell of {_OF_SHELL} nm, n", index, "", laid)
+    for beside in _NEIGHBOURS:
+        yield from _laid("neighbour beside at", beside, "nm", _neighbour(config, 1e-3 * beside))
+    for degrees in _ELEVATIONS:
+        laid = of_cylinder(elevation=f"{degrees} deg")(config)
+        yield from _laid("elevation", degrees, "°", laid)
+    for height in _COVERS:
+        yield from _laid("cover glass at", height, "µm", _cover(config, height))
+
+
+def _laid(
+    quantity: str, value: float, unit: str, overlay: Overlay | None
+) -> Iterator[tuple[str, float, str, Overlay]]:
+    if overlay is not None:
+        yield quantity, value, unit, overlay
+
+
+def _neighbour(config: Config, beside: float) -> Overlay:
+    """Put a cylinder of the swept one's medium beside it, as thick as the sweep's middle.
+
+    It is that far away from the thickest; from a thinner one farther.
+    """
+    scene, sweep = config.scene, config.sweep.diameters
+    own = next(one for one in scene.cylinders if one.diameter is None)
+    thick = (sweep.start + sweep.stop) / 2
+    # both stand on one plane: centres at half their diameters
+    apart = (thick + sweep.stop) / 2 + beside
+    lifted = (sweep.stop - thick) / 2
+    x = own.x + (apart**2 - lifted**2) ** 0.5
+    other = {
+        "medium": own.medium, "diameter": format_length(thick), "x": format_length(x),
+        "gap": format_length(scene.gap_of(own)),
+    }  # fmt: skip
+    return {"scene": {"cylinders": [*config.to_dict()["scene"]["cylinders"], other]}}
+
+
+def _cover(config: Config, height: float) -> Overlay | None:
+    """Put a second slide above the cylinders."""
+    scene = config.scene
+    if len(scene.layers) != 2:
+        return None
+    glass, water = scene.objective_medium, scene.host_medium
+    between = {"medium": water, "thickness": f"{height} um"}
+    return {"scene": {"layers": [glass, between, glass]}}

@@ -1,0 +1,49 @@
+"""How well a lab must know a thing in a scene: what of it moves the slope by a fraction."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from octsim.studies.scenes.cases import Case
+from octsim.studies.validity.errors import ESTIMATORS, FOCUS_MODES
+
+Array = NDArray[np.float64]
+TOLERANCE = 0.01
+"""Of the slope at a held focus, rms over the diameters."""
+_HELD, _SINUSOID = FOCUS_MODES.index("held"), ESTIMATORS.index("sinusoid")
+
+
+def tolerated(every: Sequence[Case], slope: Array) -> Array:
+    """Return how much more or less of each case's quantity moves the held slope by `TOLERANCE`.
+
+    By the difference to the next case of the same quantity, or to the one before.
+
+    Parameters
+    ----------
+    every : sequence of Case
+    slope : ndarray, shape (case, scheme, mode, estimator, D)
+        Slopes, mrad/nm.
+
+    Returns
+    -------
+    ndarray, shape (case, scheme)
+        In the case's unit; NaN of a quantity with one case, or where nothing is known.
+    """
+    held = slope[:, :, _HELD, _SINUSOID]
+    found = np.full(held.shape[:2], np.nan)
+    for row, case in enumerate(every):
+        beside = [
+            other for other in (row + 1, row - 1)
+            if 0 < other < len(every) and every[other].quantity == case.quantity
+        ]  # fmt: skip
+        if not beside:
+            continue
+        step = every[beside[0]].value - case.value
+        rate = (held[beside[0]] - held[row]) / step
+        known = np.isfinite(rate)
+        count = np.where(known.any(axis=-1), known.sum(axis=-1), np.nan)
+        rms = np.sqrt((np.where(known, rate, 0.0) ** 2).sum(axis=-1) / count)
+        mean = np.abs(np.where(known, held[row], 0.0).sum(axis=-1) / count)
+        found[row] = np.where(rms > 0, TOLERANCE * mean / np.where(rms > 0, rms, 1.0), np.nan)
+    return found
