@@ -2,11 +2,14 @@
 
 (Beutel et al., Comput. Phys. Commun. 297, 109076 (2024).) k = 8 /µm; radii 0.3 and 0.25 µm, indices
 1.39 and 1.45 in 1.33, axes at (0, 0.3) and (0.8, 0.5) µm, orders to 10. Turned from helicities into
-(E_y, Z₀H_y): outgoing waves of orders −2 … 2 about each axis, (cylinder, component, order), of light
-that is the regular wave m = 0 of E_y about the first axis, and m = 1 of H_y about the second one.
+(E_y, Z₀H_y): outgoing waves of orders −2 … 2 about each axis, (cylinder, component, order), of
+light that is the regular wave m = 0 of E_y about the first axis, or m = 1 of H_y about the second.
+By k_y / k and which of them.
 """
 
-OUTGOING = {
+from typing import Any
+
+OUTGOING: dict[tuple[float, str], Any] = {
     (0.5, "first"): [
         [
             [

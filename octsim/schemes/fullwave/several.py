@@ -81,7 +81,7 @@ def several(
         _regular(one, lights, along, k, m, orders) for one, m in zip(cylinders, waves, strict=True)
     ]
     matrices = [
-        [_both_signs(t) for t in scattering_of(one, along, k, m)]
+        [both_signs(t) for t in scattering_of(one, along, k, m)]
         for one, m in zip(cylinders, waves, strict=True)
     ]
     epsilon = cylinders[0].n_water ** 2
@@ -142,7 +142,7 @@ def _regular(
     return found
 
 
-def _both_signs(matrix: Array) -> Array:
+def both_signs(matrix: Array) -> Array:
     """Return T of orders −M … M, (K, Y, 2, 2, 2M + 1): light along turns the other way for −m."""
     mirrored = matrix[..., :0:-1].copy()
     mirrored[0, 1] *= -1
@@ -195,7 +195,7 @@ def _incoming(
         Of both polarisations.
     tolerance : float
     """
-    t = _blocks(whole)
+    t = in_blocks(whole)
     # unknowns are b over the root of T, which falls with the order as fast as R grows
     scale = np.sqrt(np.abs(t).max(axis=(0, 2)))
     inverse = np.divide(1.0, scale, out=np.zeros_like(scale), where=scale > 0)
@@ -218,7 +218,7 @@ def _incoming(
     return regular + np.moveaxis(between @ np.moveaxis(b * scale, 0, -1), -1, 0), steps
 
 
-def _blocks(whole: list[Array]) -> Array:
+def in_blocks(whole: list[Array]) -> Array:
     """Return T of all cylinders as matrices (Y, N, N)."""
     sizes = [2 * t.shape[-1] for t in whole]
     found = np.zeros((len(whole[0]), sum(sizes), sum(sizes)), np.complex128)

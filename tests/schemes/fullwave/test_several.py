@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.special import hankel1
 from two_by_treams import OUTGOING
 
 from octsim.base.errors import OctsimError
@@ -16,6 +17,8 @@ from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane, Layer, cy
 from octsim.schemes.fullwave.neighbours import Step, straight, through_planes, to_another
 from octsim.schemes.fullwave.operators import Operators
 from octsim.schemes.fullwave.orders import Orders
+from octsim.schemes.fullwave.several import both_signs, in_blocks
+from octsim.schemes.fullwave.shells import scattering_of
 from octsim.schemes.fullwave.solve import Point, field_at, solve
 from octsim.schemes.light import AccuracyStatus
 
@@ -36,16 +39,13 @@ def field_of(
 
 @pytest.mark.parametrize(("along", "light"), OUTGOING)
 def test_cylinders_without_planes_are_those_of_treams(along: float, light: str) -> None:
-    from octsim.schemes.fullwave.several import _blocks, _both_signs
-    from octsim.schemes.fullwave.shells import scattering_of
-
     waves, at = 10, np.array([along])
     size = 2 * waves + 1
     each = (
         CylinderOnPlane(1.33, 1.33, 1.39, 0.0, 0.6),
         CylinderOnPlane(1.33, 1.33, 1.45, 0.25, 0.5, 0.8),
     )
-    t = _blocks([_both_signs(scattering_of(one, at, K, waves).whole)[0] for one in each])[0]
+    t = in_blocks([both_signs(scattering_of(one, at, K, waves).whole)[0] for one in each])[0]
     r = np.zeros((2, 2, size, 2, 2, size), complex)
     for to, of in ((0, 1), (1, 0)):
         sent = straight(Step(each[of], each[to]), at, 8.0, waves, waves)[0]
@@ -70,8 +70,6 @@ def test_a_mirror_sends_what_an_image_would(across: float) -> None:
     found = through_planes(step, by, along, 8.0, waves, waves)
     kappa = 8.0 * np.sqrt(1.33**2 - along**2)
     up, order = step.of.height + step.to.height, np.arange(-waves, waves + 1)
-    from scipy.special import hankel1
-
     # H_m e^{imφ} of φ → −φ is (−1)^m times that of −m; then Graf's theorem from below the plane
     for row, one in enumerate(kappa):
         turn, distance = np.arctan2(up, across), np.hypot(up, across)
@@ -103,8 +101,7 @@ def test_a_scene_and_its_mirror_image_are_the_same() -> None:
     assert np.abs(here - field_of(ONE)).max() > 1e-4
 
 
-def test_cylinders_that_share_a_place_are_one() -> None:
-    # two halves of one weak cylinder's contrast scatter as the whole, but for what is of both
+def test_weak_cylinders_add_up_but_for_what_they_send_to_each_other() -> None:
     fields = []
     for contrast in (2e-4, 2e-5):
         weak = ONE._replace(n_neuron=1.33 + contrast, gap=0.1)
