@@ -98,7 +98,10 @@ def through_planes(
         # of what goes up e^{−imβ}, of what comes up e^{imβ}; (−1)^m times the other downwards
         to = _powers(turn if to_up else -1 / turn, waves_to)
         of = _powers(1 / turn if of_up else -turn, waves_of)
-        return _sum_over(to, [[r.ee * size, r.eh * size], [r.he * size, r.hh * size]], of)
+        found = _sum_over(to, (r.ee * size, r.eh * size, r.hh * size), of)
+        # what E makes of H is in proportion to what H makes of E
+        found[:, 1, :, 0] = (-epsilon if turned else epsilon) * found[:, 0, :, 1]
+        return found
 
     if not scene.above:
         return part(below, h_of + h_to, to_up=True, of_up=False)
@@ -183,16 +186,18 @@ def _last(waves: int, height: float) -> float:
 
 def _powers(turn: Array, waves: int) -> Array:
     """Return the powers −M … M of e^{iβ} (Y, B): (Y, 2M + 1, B)."""
-    order = np.arange(-waves, waves + 1)[:, np.newaxis]
-    found: Array = turn[:, np.newaxis] ** order
+    found = np.ones((len(turn), 2 * waves + 1, turn.shape[-1]), np.complex128)
+    inverse = 1 / turn
+    for m in range(1, waves + 1):
+        found[:, waves + m] = found[:, waves + m - 1] * turn
+        found[:, waves - m] = found[:, waves - m + 1] * inverse
     return found
 
 
-def _sum_over(to: Array, by: list[list[Array]], of: Array) -> Array:
-    """Return the sum over plane waves (Y, 2, 2M + 1, 2, 2M′ + 1)."""
-    rows, columns = to.shape[1], of.shape[1]
-    found = np.empty((len(to), 2, rows, 2, columns), np.complex128)
-    for i in (0, 1):
-        for j in (0, 1):
-            found[:, i, :, j] = (to * by[i][j][:, np.newaxis]) @ of.swapaxes(1, 2)
+def _sum_over(to: Array, by: tuple[Array, Array, Array], of: Array) -> Array:
+    """Return the sums over plane waves of ee, eh and hh (Y, 2, 2M + 1, 2, 2M′ + 1)."""
+    found = np.empty((len(to), 2, to.shape[1], 2, of.shape[1]), np.complex128)
+    turned = of.swapaxes(1, 2)
+    for (i, j), one in zip(((0, 0), (0, 1), (1, 1)), by, strict=True):
+        found[:, i, :, j] = (to * one[:, np.newaxis]) @ turned
     return found

@@ -195,27 +195,46 @@ def _incoming(
         Of both polarisations.
     tolerance : float
     """
-    t = in_blocks(whole)
-    # unknowns are b over the root of T, which falls with the order as fast as R grows
-    scale = np.sqrt(np.abs(t).max(axis=(0, 2)))
-    inverse = np.divide(1.0, scale, out=np.zeros_like(scale), where=scale > 0)
-    system = (inverse[:, np.newaxis] * t) @ (between * scale)
-    right = np.moveaxis(((inverse[:, np.newaxis] * t) @ np.moveaxis(regular, 0, -1)), -1, 0)
-    b, before = right, np.inf
+    light = np.moveaxis(regular, 0, -1)
+    first = _scattered(whole, light)
+    b, before = first, np.inf
     steps, settled = 0.0, False
     for _ in range(_ITERATIONS):
-        following = right + np.moveaxis(system @ np.moveaxis(b, 0, -1), -1, 0)
-        change = float(np.abs((following - b) * scale).max())
+        following = first + _scattered(whole, between @ b)
+        change = float(np.abs(following - b).max())
         b, steps = following, steps + 2
-        settled = change <= tolerance * float(np.abs(b * scale).max())
+        settled = change <= tolerance * float(np.abs(b).max())
         if settled or not change < before:
             break
         before = change
     if not settled:
-        size = system.shape[-1]
-        solved = np.linalg.solve(np.eye(size) - system, np.moveaxis(right, 0, -1))
-        b, steps = np.moveaxis(solved, -1, 0), steps + size / 3
-    return regular + np.moveaxis(between @ np.moveaxis(b * scale, 0, -1), -1, 0), steps
+        b, steps = _by_elimination(between, whole, first), steps + between.shape[-1] / 3
+    return np.moveaxis(light + between @ b, -1, 0), steps
+
+
+def _scattered(whole: list[Array], light: Array) -> Array:
+    """Return T of each cylinder times regular waves (Y, N, P)."""
+    found, place = np.empty_like(light), 0
+    for t in whole:
+        half = t.shape[-1]
+        e, h = (light[:, place + i * half : place + (i + 1) * half] for i in (0, 1))
+        for i in (0, 1):
+            part = t[:, i, 0, :, np.newaxis] * e + t[:, i, 1, :, np.newaxis] * h
+            found[:, place + i * half : place + (i + 1) * half] = part
+        place += 2 * half
+    return found
+
+
+def _by_elimination(between: Array, whole: list[Array], first: Array) -> Array:
+    """Return b of (1 − T R) b = T a, (Y, N, P)."""
+    t = in_blocks(whole)
+    # unknowns are b over the root of T, which falls with the order as fast as R grows
+    scale = np.sqrt(np.abs(t).max(axis=(0, 2)))
+    inverse = np.divide(1.0, scale, out=np.zeros_like(scale), where=scale > 0)[:, np.newaxis]
+    system = (inverse * t) @ (between * scale)
+    found: Array = np.linalg.solve(np.eye(system.shape[-1]) - system, inverse * first)
+    found *= scale[:, np.newaxis]
+    return found
 
 
 def in_blocks(whole: list[Array]) -> Array:
