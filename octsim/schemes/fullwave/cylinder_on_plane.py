@@ -153,7 +153,8 @@ def _among_planes(
     """Return a cylinder, given by its surfaces, in numbers."""
     host, core = cylinder.outside, (shells[-1] if shells else cylinder).inside
     planes = [surface for surface in scene.surfaces if isinstance(surface, Plane)]
-    below = [plane for plane in planes if plane.height <= cylinder.z - cylinder.radius]
+    # by the axis, as a plane that a cylinder touches can seem to cut it by the last digit
+    below = [plane for plane in planes if plane.height < cylinder.z]
     above = planes[len(below) :]
     floor = below[-1].height if below else 0.0
     radii = [one.radius for one in (cylinder, *shells)]
