@@ -98,7 +98,10 @@ def through_planes(
         # of what goes up e^{−imβ}, of what comes up e^{imβ}; (−1)^m times the other downwards
         to = _powers(turn if to_up else -1 / turn, waves_to)
         of = _powers(1 / turn if of_up else -turn, waves_of)
-        return _sum_over(to, [[r.ee * size, r.eh * size], [r.he * size, r.hh * size]], of)
+        found = _sum_over(to, (r.ee * size, r.eh * size, r.hh * size), of)
+        # what E makes of H is in proportion to what H makes of E
+        found[:, 1, :, 0] = (-epsilon if turned else epsilon) * found[:, 0, :, 1]
+        return found
 
     if not scene.above:
         return part(below, h_of + h_to, to_up=True, of_up=False)
@@ -131,7 +134,9 @@ def back_to_itself(
     weight = np.concatenate([path.weight[::-1], path.weight]) / np.pi
     size = kappa[:, np.newaxis]
     return Wavevectors(
-        size * np.sin(angle), size * np.cos(angle), np.broadcast_to(weight, (along.size, len(angle)))
+        size * np.sin(angle),
+        size * np.cos(angle),
+        np.broadcast_to(weight, (along.size, len(angle))),
     )
 
 
@@ -140,7 +145,11 @@ def to_another(
 ) -> Wavevectors:
     """Return the plane waves by which a cylinder's light comes to another through planes."""
     scene = step.of
-    indices = [scene.n_glass, scene.n_water, *(layer.n.real for layer in (*scene.films, *scene.above))]
+    indices = [
+        scene.n_glass,
+        scene.n_water,
+        *(layer.n.real for layer in (*scene.films, *scene.above)),
+    ]
     end = _BEYOND * max(indices)
     kappa = np.sqrt(scene.n_water**2 - along**2)[:, np.newaxis]
     depth = min(_DEEPEST, _GROWTH / max(k * abs(step.across), 1e-3))
@@ -160,9 +169,7 @@ def to_another(
     last = max(_last(waves, k * float(kappa.min()) * height) for height in heights)
     span = np.maximum(last - start, 0.5)
     b = start + span * (x + 1) / 2
-    tail = Wavevectors(
-        kappa * np.cosh(b) + 0j, 1j * kappa * np.sinh(b), -1j * span * w / 2 + 0 * b
-    )
+    tail = Wavevectors(kappa * np.cosh(b) + 0j, 1j * kappa * np.sinh(b), -1j * span * w / 2 + 0 * b)
     ahead = [np.concatenate(both, axis=1) for both in zip(first, tail, strict=True)]
     return Wavevectors(
         np.concatenate([-ahead[0], ahead[0]], axis=1), np.concatenate([ahead[1]] * 2, axis=1),
@@ -179,16 +186,18 @@ def _last(waves: int, height: float) -> float:
 
 def _powers(turn: Array, waves: int) -> Array:
     """Return the powers −M … M of e^{iβ} (Y, B): (Y, 2M + 1, B)."""
-    order = np.arange(-waves, waves + 1)[:, np.newaxis]
-    found: Array = turn[:, np.newaxis] ** order
+    found = np.ones((len(turn), 2 * waves + 1, turn.shape[-1]), np.complex128)
+    inverse = 1 / turn
+    for m in range(1, waves + 1):
+        found[:, waves + m] = found[:, waves + m - 1] * turn
+        found[:, waves - m] = found[:, waves - m + 1] * inverse
     return found
 
 
-def _sum_over(to: Array, by: list[list[Array]], of: Array) -> Array:
-    """Return the sum over plane waves (Y, 2, 2M + 1, 2, 2M′ + 1)."""
-    rows, columns = to.shape[1], of.shape[1]
-    found = np.empty((len(to), 2, rows, 2, columns), np.complex128)
-    for i in (0, 1):
-        for j in (0, 1):
-            found[:, i, :, j] = (to * by[i][j][:, np.newaxis]) @ of.swapaxes(1, 2)
+def _sum_over(to: Array, by: tuple[Array, Array, Array], of: Array) -> Array:
+    """Return the sums over plane waves of ee, eh and hh (Y, 2, 2M + 1, 2, 2M′ + 1)."""
+    found = np.empty((len(to), 2, to.shape[1], 2, of.shape[1]), np.complex128)
+    turned = of.swapaxes(1, 2)
+    for (i, j), one in zip(((0, 0), (0, 1), (1, 1)), by, strict=True):
+        found[:, i, :, j] = (to * one[:, np.newaxis]) @ turned
     return found

@@ -116,10 +116,13 @@ def test_it_is_that_of_dense_rules(layered: Layered) -> None:
 
 
 def scene_in_numbers(layered: Layered) -> CylinderOnPlane:
-    each = (tuple(Layer(*one) for one in layers) for layers in (layered.shells, layered.films))
+    shells, films, above = (
+        tuple(Layer(*one) for one in layers)
+        for layers in (layered.shells, layered.films, layered.above)
+    )
     return CylinderOnPlane(
         layered.n_glass, layered.n_water, layered.n_neuron.real, layered.gap, layered.diameter,
-        layered.offset, 0.0, *each, layered.room, tuple(Layer(*one) for one in layered.above),
+        layered.offset, 0.0, shells, films, layered.room, above,
     )  # fmt: skip
 
 
@@ -215,3 +218,16 @@ def test_its_error_is_within_what_it_says(scene: CylinderOnPlane, accuracy: floa
     exact = field_at(point, k, Orders(24, 90, 80, 70), 1e-14, Operators()).values
     phase = np.exp(1j * k * light.optical_path_length)
     assert np.abs(light.values[:, [0, 3, -1]] * phase - exact).max() <= light.error
+
+
+def test_a_cylinder_that_touches_a_plane_is_above_it() -> None:
+    glass, film, water, axon = (
+        Region(name, Constant(n))
+        for name, n in (("glass", 1.52), ("film", 1.6), ("water", 1.33), ("axon", 1.39))
+    )
+    for height in np.linspace(0.1, 0.9, 50).tolist():
+        planes = Plane("P", 0.0, glass, film), Plane("Q", height, film, water)
+        cylinder = Cylinder("C", 0.0, height + 0.37, 0.37, axon, water)
+        found = cylinder_on_plane(Scene(glass, (*planes, cylinder)))
+        assert (len(found.films), found.above) == (1, ())
+        assert abs(found.gap) < 1e-15
