@@ -24,8 +24,9 @@ _BRIGHT, _FAINTER = 1e-4, 0.01
 def steepest_sine(faces: Faces, detector: Detector) -> float:
     """Return the largest sine of light's angle with the axis; above 1 past the critical angle."""
     radius, distance = detector.objective_radius, detector.focus_distance
-    least = float(min(faces.n_i.min(), faces.n_t.min()))
-    return radius / math.hypot(radius, distance) * faces.n_objective / least
+    own = faces.n_objective
+    least = float(min(faces.n_i.min(initial=own), faces.n_t.min(initial=own)))
+    return radius / math.hypot(radius, distance) * own / least
 
 
 def in_shells(scene: Scene) -> bool:
