@@ -10,9 +10,10 @@ from typing import NamedTuple
 from octsim.config.dispersion import absorbs, described, without_absorption
 from octsim.config.effects import ZernikeConfig
 from octsim.config.fields import as_text
+from octsim.config.mirror_plane import directions, mirrored_at
 from octsim.config.models import Config
 from octsim.config.scene import AttenuationConfig, CylinderConfig, RefractiveIndex
-from octsim.optics.zernike import noll
+from octsim.optics.zernike import Aberration
 from octsim.schemes.table import SCHEMES, Ability, Scheme
 
 
@@ -52,6 +53,8 @@ def asked_of_scheme(config: Config) -> Iterator[Asked]:
     elif not media:
         ability = Ability.PLATES if len(set(layers)) > 1 else Ability.NO_CYLINDER
         yield Asked(ability, "scene.cylinders", as_text(media))
+    if mirrored_at(scene) is None:
+        yield Asked(Ability.UNMIRRORED, "scene.cylinders", directions(scene))
     for place, cylinder in enumerate(scene.cylinders):
         key = f"scene.cylinders.{place}"
         if cylinder.medium == scene.host_medium and not cylinder.shells:
@@ -74,7 +77,8 @@ def _effects(config: Config) -> Iterator[Asked]:
     if objective.zernike.of:
         terms = as_text(plain["objective"]["zernike"])
         yield Asked(Ability.ZERNIKE, "objective.zernike", terms)
-        if any(_odd_along(number) for number in objective.zernike.of):
+        aberration = Aberration(tuple(objective.zernike.of.items()))
+        if not aberration.turned(mirrored_at(config.scene) or 0.0).even[1]:
             yield Asked(Ability.ODD_ALONG, "objective.zernike", terms)
     if objective.focal_shift and objective.focal_shift.moves:
         shift = as_text(plain["objective"]["focal_shift"])
@@ -88,11 +92,6 @@ def _effects(config: Config) -> Iterator[Asked]:
     if (arm := config.interferometer.reference) and arm.amplitude:
         reference = as_text(plain["interferometer"]["reference"])
         yield Asked(Ability.REFERENCE, "interferometer.reference", reference)
-
-
-def _odd_along(number: int) -> bool:
-    """Return whether a Zernike term changes its sign with y."""
-    return noll(number)[1] < 0
 
 
 def _indices(config: Config) -> Iterator[Asked]:
@@ -203,6 +202,8 @@ def _indices_for(asked: set[Ability], config: Config) -> RefractiveIndex:
 
 
 def _without(asked: set[Ability], cylinder: CylinderConfig) -> CylinderConfig:
+    if Ability.UNMIRRORED in asked:
+        asked = asked | {Ability.AZIMUTH, Ability.ELEVATION}
     fields = {one: name for one, name in _OF_CYLINDERS.items() if one in asked}
     plain = CylinderConfig(medium=cylinder.medium)
     return cylinder.model_copy(update={name: getattr(plain, name) for name in fields.values()})

@@ -24,8 +24,15 @@ _BRIGHT, _FAINTER = 1e-4, 0.01
 def steepest_sine(faces: Faces, detector: Detector) -> float:
     """Return the largest sine of light's angle with the axis; above 1 past the critical angle."""
     radius, distance = detector.objective_radius, detector.focus_distance
-    least = float(min(faces.n_i.min(), faces.n_t.min()))
-    return radius / math.hypot(radius, distance) * faces.n_objective / least
+    own = faces.n_objective
+    least = float(min(faces.n_i.min(initial=own), faces.n_t.min(initial=own)))
+    return radius / math.hypot(radius, distance) * own / least
+
+
+def in_shells(scene: Scene) -> bool:
+    """Return whether a cylinder has more than one wall: ways that end at one of them are many."""
+    axes = [(one.x, one.z) for one in scene.surfaces if isinstance(one, Cylinder)]
+    return len(set(axes)) < len(axes)
 
 
 def sees_edges(scene: Scene) -> bool:
@@ -39,18 +46,25 @@ def sees_edges(scene: Scene) -> bool:
 
 
 def orders_of(
-    accuracy: float, symmetric: bool, steepest: float, edges: bool
+    accuracy: float, symmetric: bool, steepest: float, scene: Scene
 ) -> tuple[tuple[int, int], tuple[int, int]]:
     """Return the numbers of nodes along each axis to begin with: of the survey and of a tile."""
     digits = -math.log10(accuracy)
     along_s = min(max(3, round(2 + digits)), 9)
     along_v = max(3, along_s - 2)
-    if steepest > STEEP or edges:
+    if in_shells(scene):
+        along_s, along_v = max(along_s, 8), max(along_v, 5)
+    if steepest > STEEP or sees_edges(scene):
         # near grazing incidence light goes to and fro, and its way changes fast
         along_s, along_v = 12, (MOST_RAYS - CHECKS) // 12
     # where nothing says that patches are near x = 0, all of the aperture is looked at closely
     survey = (along_s if symmetric else min(COLUMNS, (MOST_RAYS - CHECKS) // along_v)), along_v
     return survey, (min(max(4, round(digits + 1)), 10), min(max(3, round(0.5 * digits + 1)), 8))
+
+
+def are_many(faces: Faces | AnyFaces) -> bool:
+    """Return whether a scene has many more light paths than the thesis's, or plates."""
+    return isinstance(faces, AnyFaces)
 
 
 def faintest(
@@ -75,7 +89,7 @@ def faintest(
     budget : int
         Segments for all of the point.
     """
-    if not isinstance(faces, AnyFaces):
+    if not are_many(faces):
         return 0.0
     radius = point.detector.objective_radius * (np.arange(_PILOTS) + 0.5) / _PILOTS
     angle = np.arange(_PILOTS) * math.pi * (3 - math.sqrt(5))

@@ -22,7 +22,7 @@ from octsim.schemes.paths.aperture_tiles import images
 from octsim.schemes.paths.chebyshev import LOOK
 from octsim.schemes.paths.check_rays import CHECKS
 from octsim.schemes.paths.falloffs import Parabola, Series
-from octsim.schemes.paths.first_orders import faintest, orders_of, sees_edges, steepest_sine
+from octsim.schemes.paths.first_orders import are_many, faintest, orders_of, steepest_sine
 from octsim.schemes.paths.kept_rays import WeightedRays, kept, room_for_nodes
 from octsim.schemes.paths.missed_light import light_misses
 from octsim.schemes.paths.progress import SPARE, PathGoal, Progress, traced
@@ -61,8 +61,9 @@ BUDGET = 1_000_000
 """Segments traced for one point, at most."""
 _ATTEMPTS = 4
 _PEAK_SAMPLES = 32
-_FAINT = 1e-3  # of the accuracy: amplitude below which light is followed no more
-_ONE_PATH = 0.1  # of the accuracy, that a single path may use
+_FAINT, _FAINT_OF_MANY = 1e-3, 2e-4  # of the accuracy: amplitude from which light is followed
+_FAINTER = 0.01  # than that, to which it may have to be
+_ONE_PATH, _ONE_OF_MANY = 0.1, 0.06  # of the accuracy, that a single path may use
 _MARGIN = 0.7  # of the accuracy, that the estimate of the error may reach
 
 
@@ -161,12 +162,11 @@ def _integrate_all(
 @compiled()
 def _integrate(
     faces: Faces, point: Point, survey_orders: tuple[int, int], orders: tuple[int, int],
-    max_intersections: int, accuracy: float, least: float, budget: int, space: Workspace,
-    rays: Any,
+    max_intersections: int, accuracy: float, relative: float, faint: float, least: float,
+    budget: int, space: Workspace, rays: Any,
 ) -> tuple[Any, ...]:  # fmt: skip
-    accuracy = _MARGIN * accuracy
-    faint, segments, scale, missing, count = max(_FAINT * accuracy, least), 0, 0.0, 0.0, 0
-    relative, status = _ONE_PATH * accuracy, AccuracyStatus.NOT_REACHED.value
+    faint, segments, scale, missing, count = max(faint, least), 0, 0.0, 0.0, 0
+    status = AccuracyStatus.NOT_REACHED.value
     multiplicity = images(point.symmetric)
     for _ in range(_ATTEMPTS):
         wide, close, lost, surveyed = survey_aperture(
@@ -264,17 +264,18 @@ def integrate_nodes(
     middle = (low + high) / 2
     faces = faces_at(scene, middle if wavenumber is None else wavenumber)
     point = Point(symmetric, detector, focus, middle, high, falloff, lens, tables_of(symmetric))
-    survey_orders, orders = orders_of(
-        accuracy, symmetric, steepest_sine(faces, detector), sees_edges(scene)
-    )
-    # what is first followed may not be faint enough
+    survey_orders, orders = orders_of(accuracy, symmetric, steepest_sine(faces, detector), scene)
+    accuracy *= _MARGIN
+    # of many paths each may have less of the error, and of more rays that are too faint each is
+    one_path, faint = (_ONE_OF_MANY, _FAINT_OF_MANY) if are_many(faces) else (_ONE_PATH, _FAINT)
+    faint *= accuracy
     least = faintest(
         faces, point, survey_orders[0] * survey_orders[1] + CHECKS, max_intersections,
-        0.01 * _FAINT * _MARGIN * accuracy, budget,
+        _FAINTER * faint, budget,
     )  # fmt: skip
     rays, missing, segments, status = _integrate(
-        faces, point, survey_orders, orders, max_intersections, accuracy, least, budget,
-        room_for_point(), room_for_nodes(placed),
+        faces, point, survey_orders, orders, max_intersections, accuracy, one_path * accuracy,
+        faint, least, budget, room_for_point(), room_for_nodes(placed),
     )  # fmt: skip
     path, amplitude, rough_amplitude, optical_path_length, *launched = rays
     light = Light(
