@@ -65,7 +65,7 @@ def scene_of(config: Config, diameter: float) -> Scene:
     ]
     bodies = [
         Body(
-            tuple(region(part.medium) for part in (*cylinder.shells, cylinder)),
+            (*(region(shell.medium) for shell in cylinder.shells), region(cylinder.medium)),
             tuple(shell.thickness for shell in cylinder.shells),
             diameter if cylinder.diameter is None else cylinder.diameter,
             scene.gap_of(cylinder), cylinder.x, cylinder.azimuth, cylinder.elevation,

@@ -166,6 +166,8 @@ class Scene:
 
     objective: Region
     surfaces: tuple[Surface, ...]
+    unseen_meetings: int = 0
+    """Meetings of each light path with a plane that is none; they do not count."""
 
     @property
     def regions(self) -> tuple[Region, ...]:

@@ -59,9 +59,7 @@ def names_of_paths(scene: Scene, wavenumber: float, codes: Iterable[int]) -> lis
 
 
 @register_jitable
-def _by_digits(
-    faces: Faces | AnyFaces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]
-) -> int:
+def _by_digits(faces: Faces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]) -> int:
     base, num = faces.kind.size, 0
     rest = code
     while rest > 1:
@@ -80,7 +78,7 @@ def _by_digits(
 
 
 @register_jitable
-def _by_counts(
+def _by_count(
     faces: AnyFaces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]
 ) -> int:
     if faces.counts.shape[0] == 0:
@@ -90,36 +88,34 @@ def _by_counts(
         num += 1
     rest, departure = code - faces.numbers[num], 0
     for m in range(num):
-        left, here = num - 1 - m, departure
+        here = departure
         for choice in range(faces.first[here], faces.first[here + 1]):
             f = faces.next_face[choice]
-            face[m] = f
-            through[m], departure = False, faces.after_reflection[f]
-            there = faces.counts[left, departure]
-            if rest < there:
+            back, beyond = faces.after_reflection[f], faces.after_transmission[f]
+            reflected, transmitted = (
+                faces.counts[num - 1 - m, back],
+                faces.counts[num - 1 - m, beyond],
+            )
+            if rest < reflected + transmitted:
+                face[m], through[m] = f, rest >= reflected
+                rest -= reflected if through[m] else 0
+                departure = beyond if through[m] else back
                 break
-            rest -= there
-            through[m], departure = True, faces.after_transmission[f]
-            there = faces.counts[left, departure]
-            if rest < there:
-                break
-            rest -= there
+            rest -= reflected + transmitted
     return num
 
 
-def steps_of(
-    faces: Faces | AnyFaces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]
-) -> int:
+def steps_of(faces: Faces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]) -> int:
     """Read a path's code into the faces that it meets, and how it leaves each; return how many.
 
     `face` and `through` have room for `LONGEST` meetings.
     """
-    read = _by_counts if isinstance(faces, AnyFaces) else _by_digits
-    return read(faces, code, face, through)  # type: ignore[operator]
+    by = _by_count if isinstance(faces, AnyFaces) else _by_digits
+    return by(faces, code, face, through)  # type: ignore[arg-type]
 
 
 @overload(steps_of, strict=False)
-def _compile_steps_of(
+def _compile_steps(
     faces: Any, code: Any, face: Any, through: Any  # noqa: ARG001
 ) -> Callable[..., int]:  # fmt: skip
-    return _by_counts if faces.instance_class is AnyFaces else _by_digits
+    return _by_count if faces.instance_class is AnyFaces else _by_digits

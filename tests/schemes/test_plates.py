@@ -123,7 +123,7 @@ def test_the_paths_of_plates_are_named_by_their_planes() -> None:
     assert {"PR", "PT QR PT", "PT QT SR QT PT"} <= called
 
 
-@pytest.mark.parametrize("scheme", ["vogel", "paths", "fullwave"])
+@pytest.mark.parametrize("scheme", ["paths", "fullwave"])
 def test_layers_of_one_medium_are_no_plate(scheme: str) -> None:
     same = {"layers": ["glass", {"medium": "glass", "thickness": "swept"}, "glass"]}
     with pytest.raises(ConfigError, match="needs a cylinder"):

@@ -259,10 +259,10 @@ def integrate_nodes(
     )  # fmt: skip
     if sees_edges(scene):
         # all of what is found in this way counts as error
-        rest = unseen(faces, point, np.unique(rays[0]), max_intersections, accuracy)
-        rest = (*rest[:2], np.zeros(rest.path.size), *rest[2:])
+        found = unseen(faces, point, np.unique(rays[0]), max_intersections, accuracy)
+        rest = (*found[:2], np.zeros(found.path.size), *found[2:])
         rays = tuple(map(np.concatenate, zip(rays, rest[: len(rays)], strict=True)))
-        largest = float(np.abs(rest[1]).sum())
+        largest = float(np.abs(found.amplitude).sum())
         if status == AccuracyStatus.REACHED and 2 * largest > accuracy * size:
             status = AccuracyStatus.NOT_REACHED.value
     path, amplitude, rough_amplitude, optical_path_length, *launched = rays
@@ -293,5 +293,4 @@ def integrate(
 
     Arguments and exceptions as there.
     """
-    found = integrate_nodes(scene, detector, focus, band, accuracy, max_intersections, budget)
-    return found.light
+    return integrate_nodes(scene, detector, focus, band, accuracy, max_intersections, budget).light

@@ -114,10 +114,8 @@ def test_unpolarised_light_does_not_see_an_azimuth(azimuth: float) -> None:
 
 
 def test_opposite_elevations_agree() -> None:
-    up, down = (
-        spectrum("paths", neurons({"elevation": f"{angle} deg", "azimuth": "20 deg"}), accuracy=1e-3)
-        for angle in (2, -2)
-    )
+    lifted = [neurons({"elevation": f"{angle} deg", "azimuth": "20 deg"}) for angle in (2, -2)]
+    up, down = (spectrum("paths", one, accuracy=1e-3) for one in lifted)
     assert off(up.intensity, down.intensity) <= 1e-12
 
 
@@ -137,9 +135,7 @@ def test_shells_and_layers_without_contrast_are_nothing() -> None:
 
 def test_a_shell_of_the_same_index_is_nothing_with_enough_meetings() -> None:
     plain = spectrum("paths", {}, accuracy=1e-8, max_intersections=9)
-    other = spectrum(
-        "paths", shelled("other", 1.39, "100 nm"), accuracy=1e-8, max_intersections=25
-    )
+    other = spectrum("paths", shelled("other", 1.39, "100 nm"), accuracy=1e-8, max_intersections=25)
     whole = spectrum("paths", {}, accuracy=1e-8, max_intersections=25)
     assert off(other.intensity, whole.intensity) <= 1e-8
     assert plain.status == other.status == AccuracyStatus.REACHED
