@@ -122,12 +122,6 @@ class Cylinder:
             z=self.z + along * math.tan(self.elevation), azimuth=azimuth, elevation=elevation,
         )  # fmt: skip
 
-    def mirrored(self, *, x: bool) -> "Cylinder":
-        """Return it as seen in the plane x = 0, or in y = 0."""
-        if x:
-            return replace(self, x=-self.x, azimuth=-self.azimuth)
-        return replace(self, azimuth=-self.azimuth, elevation=-self.elevation)
-
 
 @dataclass(frozen=True)
 class PlanePart:

@@ -39,6 +39,7 @@ SCENES: list[tuple[Ability, dict[str, Any], str]] = [
     (Ability.OFF_AXIS, {"cylinders": [{**NEURON, "x": "100 nm"}]}, "scene.cylinders.0.x: 0.1 um given, but {} has the cylinder on the optical axis"),
     (Ability.AZIMUTH, {"cylinders": [{**NEURON, "azimuth": "10 deg"}]}, "scene.cylinders.0.azimuth: 10 deg given, but {} has the cylinder along y"),
     (Ability.LAYERS, {"layers": ["glass", {"medium": "water", "thickness": "9 um"}, "glass"]}, "scene.layers: [glass, water, glass] given, but {} has two layers"),
+    (Ability.UNMIRRORED, {"cylinders": [{**NEURON, "x": "100 nm", "elevation": "2 deg"}]}, "scene.cylinders: [neuron at azimuth 0 deg, elevation 2 deg, x 0.1 um] given, but {} needs a plane"),
     (Ability.LAYERS, {"layers": ["glass", "glass"]}, "scene.layers: [glass, glass] given, but {} has two layers"),
     (Ability.NO_CYLINDER, {"layers": ["glass", {"medium": "glass", "thickness": "swept"}, "glass"], "cylinders": []}, "scene.cylinders: [] given, but {} needs a cylinder"),
     (Ability.NO_CYLINDER, {"cylinders": [{"medium": "water"}]}, "scene.cylinders.0.medium: water given, but {} needs a cylinder"),
@@ -103,11 +104,16 @@ def test_no_apodisation_is_said_to_be_read_as_not_given_by_an_aplanatic_scheme()
 
 
 def test_a_config_of_waves_is_one_of_rays_as_far_as_those_can() -> None:
-    waves = {"tracing": {"scheme": "fullwave"}}
-    config = load_config(waves, {"scene": SCENES[1][1]}, EVERY[0])
-    assert as_far_as(LIGHT_PATHS, config) == load_config(waves, EVERY[0])
-    for name in ("vogel", "fullwave"):
-        assert as_far_as(SCHEMES[name], config) == config
+    beside = {**NEURON, "x": "100 nm"}
+    plain, lifted = (
+        load_config({"scene": {"cylinders": [one]}}, EVERY[0])
+        for one in (beside, {**beside, "elevation": "2 deg"})
+    )
+    # one lacks what is lifted, the other a plane in which it is mirrored
+    for scheme in (SCHEMES["fullwave"], LIGHT_PATHS):
+        assert as_far_as(scheme, lifted) == plain
+        assert as_far_as(scheme, plain) == plain
+    assert as_far_as(SCHEMES["vogel"], lifted) == lifted
 
 
 def test_waves_are_found_for_all_polarisations_and_rays_for_the_one_that_is_asked_for() -> None:

@@ -239,8 +239,11 @@ def test_a_grid_varies_keys_in_lists() -> None:
 def test_a_grid_over_a_place_that_a_list_lacks_is_refused() -> None:
     with pytest.raises(ConfigError, match=r"grid\.scene\.cylinders\.1\.x: unknown key"):
         gridded({"scene.cylinders.1.x": ["0 um", "1 um"]}, EXACT)
-    with pytest.raises(ConfigError, match=r"scene\.cylinders\.0\.x: 1 um given, but tracing"):
-        gridded({"scene.cylinders.0.x": ["0 um", "1 um"]}, {"tracing": {"scheme": "paths"}})
+    lifted = {"scene.cylinders.0.elevation": ["0 deg", "1 deg"]}
+    with pytest.raises(
+        ConfigError, match=r"scene\.cylinders\.0\.elevation: 1 deg given, but tracing"
+    ):
+        gridded(lifted, EXACT)
 
 
 def test_media_of_other_names_are_as_good(recwarn: pytest.WarningsRecorder) -> None:

@@ -6,7 +6,6 @@ what lies between them are polynomials (`tile_nodes`, `patch_integrals`). A tile
 fit is refined (`refine`), until the whole is within the accuracy.
 """
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,14 +21,22 @@ from octsim.schemes.paths.aperture_tiles import images
 from octsim.schemes.paths.chebyshev import LOOK
 from octsim.schemes.paths.check_rays import CHECKS
 from octsim.schemes.paths.falloffs import Parabola, Series
-from octsim.schemes.paths.first_orders import are_many, faintest, orders_of, steepest_sine
+from octsim.schemes.paths.first_orders import (
+    are_many,
+    faintest,
+    orders_of,
+    sees_edges,
+    steepest_sine,
+)
 from octsim.schemes.paths.kept_rays import WeightedRays, kept, room_for_nodes
 from octsim.schemes.paths.missed_light import light_misses
+from octsim.schemes.paths.peak import mean_of, peak
 from octsim.schemes.paths.progress import SPARE, PathGoal, Progress, traced
 from octsim.schemes.paths.refine import settle
 from octsim.schemes.paths.strongest import strongest_first
 from octsim.schemes.paths.survey import part_of_faint, recall, survey_aperture
 from octsim.schemes.paths.tile_nodes import aim_at_tile
+from octsim.schemes.paths.unseen_paths import unseen
 from octsim.schemes.paths.waiting_tiles import OpenTile, pop_strongest
 from octsim.schemes.paths.workspace import (
     Point,
@@ -60,37 +67,10 @@ EVEN = Symmetry(x=True, y=True)
 BUDGET = 1_000_000
 """Segments traced for one point, at most."""
 _ATTEMPTS = 4
-_PEAK_SAMPLES = 32
 _FAINT, _FAINT_OF_MANY = 1e-3, 2e-4  # of the accuracy: amplitude from which light is followed
 _FAINTER = 0.01  # than that, to which it may have to be
 _ONE_PATH, _ONE_OF_MANY = 0.1, 0.06  # of the accuracy, that a single path may use
 _MARGIN = 0.7  # of the accuracy, that the estimate of the error may reach
-
-
-@register_jitable
-def _mean_of(rays: WeightedRays, first: int, end: int) -> tuple[float, float]:
-    """Return the sum of the amplitudes of some rays, and their mean optical path."""
-    total, reach = 0.0, 0.0
-    for i in range(first, end):
-        total += rays.amplitude[i]
-        reach += rays.amplitude[i] * rays.optical_path_length[i]
-    return total, (reach / total if total != 0 else 0.0)
-
-
-@register_jitable
-def _peak(
-    size: NDArray[np.float64], reach: NDArray[np.float64], k_mid: float, k_max: float
-) -> float:
-    """Return the largest magnitude over the band of a sum of paths, each as one ray."""
-    largest = 0.0
-    for i in range(_PEAK_SAMPLES):
-        k = k_mid + (k_max - k_mid) * (2 * i / (_PEAK_SAMPLES - 1) - 1)
-        real, imaginary = 0.0, 0.0
-        for p in range(size.size):
-            real += size[p] * math.cos(k * reach[p])
-            imaginary += size[p] * math.sin(k * reach[p])
-        largest = max(largest, math.hypot(real, imaginary))
-    return largest
 
 
 @register_jitable
@@ -132,7 +112,7 @@ def _integrate_all(
     sizes, reach = np.zeros(order.size), np.zeros(order.size)
     done, paths = 0, Progress(0, 0.0, 0.0, 0.0, 0.0, 0)
     for p in order:
-        known = max(scale, _peak(sizes, reach, point.k_mid, point.k_max), 0.03 * rest[0])
+        known = max(scale, peak(sizes, reach, point.k_mid, point.k_max), 0.03 * rest[0])
         if rest[done] <= SPARE * relative * known - paths.missing:
             break
         survey, number = (wide, p) if p < wide.code.size else (close, p - wide.code.size)
@@ -142,7 +122,7 @@ def _integrate_all(
         )  # fmt: skip
         first = paths.nodes
         rays, path = _integrate_path(faces, point, goal, survey, number, space, rays, first)
-        sizes[p], reach[p] = _mean_of(rays, first, path.nodes)
+        sizes[p], reach[p] = mean_of(rays, first, path.nodes)
         paths = Progress(
             path.nodes, paths.size + path.size, max(paths.filled, path.filled),
             paths.error + path.error, paths.missing + path.missing,
@@ -155,7 +135,7 @@ def _integrate_all(
             paths.nodes, paths.size, paths.filled, paths.error, paths.missing + rest[done],
             paths.segments,
         ),
-        _peak(sizes, reach, point.k_mid, point.k_max),
+        peak(sizes, reach, point.k_mid, point.k_max),
     )  # fmt: skip
 
 
@@ -195,7 +175,7 @@ def _integrate(
             faint = max(0.1 * faint, least)
         else:
             relative *= 0.3
-    return kept(rays, count), missing, segments, status
+    return kept(rays, count), missing, segments, status, scale
 
 
 def integrate_nodes(
@@ -273,10 +253,18 @@ def integrate_nodes(
         faces, point, survey_orders[0] * survey_orders[1] + CHECKS, max_intersections,
         _FAINTER * faint, budget,
     )  # fmt: skip
-    rays, missing, segments, status = _integrate(
+    rays, missing, segments, status, size = _integrate(
         faces, point, survey_orders, orders, max_intersections, accuracy, one_path * accuracy,
         faint, least, budget, room_for_point(), room_for_nodes(placed),
     )  # fmt: skip
+    if sees_edges(scene):
+        # all of what is found in this way counts as error
+        found = unseen(faces, point, np.unique(rays[0]), max_intersections, accuracy)
+        rest = (*found[:2], np.zeros(found.path.size), *found[2:])
+        rays = tuple(map(np.concatenate, zip(rays, rest[: len(rays)], strict=True)))
+        largest = float(np.abs(found.amplitude).sum())
+        if status == AccuracyStatus.REACHED and 2 * largest > accuracy * size:
+            status = AccuracyStatus.NOT_REACHED.value
     path, amplitude, rough_amplitude, optical_path_length, *launched = rays
     light = Light(
         path,
@@ -305,5 +293,4 @@ def integrate(
 
     Arguments and exceptions as there.
     """
-    found = integrate_nodes(scene, detector, focus, band, accuracy, max_intersections, budget)
-    return found.light
+    return integrate_nodes(scene, detector, focus, band, accuracy, max_intersections, budget).light

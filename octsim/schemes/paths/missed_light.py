@@ -1,4 +1,4 @@
-"""Whether part of an aperture's light passes a cylinder by: what returns from its edge is hard to see."""
+"""Whether part of an aperture's light passes a cylinder by: light from its edge is hard to see."""
 
 import numpy as np
 from numba.extending import register_jitable

@@ -1,0 +1,90 @@
+"""Light paths between the rays of a survey: of slivers of the aperture, by edges of cylinders.
+
+A spiral of rays goes through the whole tree, as in the scheme vogel. What it finds of paths that
+are not known is taken as it comes, and counts as error.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from octsim.optics.beam import vogel_beam
+from octsim.optics.detector import Acceptance, rim_margin
+from octsim.optics.turned_rays import path_by_lens, through_lens, turned
+from octsim.schemes.paths.check_rays import weight_of
+from octsim.schemes.paths.workspace import Point
+from octsim.tracing.faces import AnyFaces, Faces
+from octsim.tracing.kernel import FIRST_CARRIED, trace_amplitudes
+
+SCOUTS = 16_000
+"""Rays of the spiral."""
+_FAINT = 0.1  # of the accuracy: amplitude from which they are followed
+_WITHIN = 2.0  # radii of the detector: an aberration moves rays by less than the rest
+
+
+class Unseen(NamedTuple):
+    """Rays of unknown paths, those of one path side by side, D of them."""
+
+    path: NDArray[np.int64]
+    amplitude: NDArray[np.float64]
+    """With the weight of each."""
+    optical_path_length: NDArray[np.float64]
+    vx: NDArray[np.float64]
+    """Unit direction at launch, x component."""
+    vy: NDArray[np.float64]
+    carried: NDArray[np.float64]
+    """Amplitude without the weight."""
+
+
+def unseen(
+    faces: Faces | AnyFaces,
+    point: Point,
+    known: NDArray[np.int64],
+    max_intersections: int,
+    accuracy: float,
+) -> Unseen:
+    """Return the detected rays of a spiral whose light paths are not known.
+
+    Parameters
+    ----------
+    faces : Faces or AnyFaces
+        Of the scene.
+    point : Point
+    known : ndarray
+        Codes of the paths that are integrated.
+    max_intersections : int
+        Surfaces that one ray may meet.
+    accuracy : float
+        That is asked for.
+    """
+    detector = point.detector
+    beam = vogel_beam(SCOUTS, detector.objective_radius, detector.focus_distance)
+    (ray, path), numbers, _, _ = trace_amplitudes(
+        faces, through_lens(beam, point.lens), detector,
+        Acceptance(np.inf, _WITHIN * detector.radius), point.focus, max_intersections,
+        _FAINT * accuracy,
+    )  # fmt: skip
+    new = np.flatnonzero(~np.isin(path, known))
+    new = new[np.argsort(path[new], kind="stable")]
+    weight, more = np.zeros(new.size), np.zeros(new.size)
+    for place, arrival in enumerate(new.tolist()):
+        x, y, vx, vy = numbers[1:FIRST_CARRIED, arrival].tolist()
+        across, along, _ = turned(point.lens, vx, vy, 1.0)
+        cos = float(np.sqrt(1 - vx * vx - vy * vy))
+        place_x, place_y = (x - across) * cos, (y - along) * cos
+        inside = rim_margin(detector, place_x, place_y, vx, vy, cos)
+        found = weight_of(place_x, place_y, cos, inside, detector.radius, point.falloff)
+        weight[place] = max(found, 0.0)
+        more[place] = path_by_lens(point.lens, detector, x, y, vx, vy, x * x + y * y)
+    carried, launched = numbers[FIRST_CARRIED, new], ray[new]
+    there = weight > 0
+    return Unseen(
+        *(
+            one[there]
+            for one in (
+                path[new], carried * weight / SCOUTS, numbers[0, new] + more, beam.vx[launched],
+                beam.vy[launched], carried,
+            )
+        )
+    )  # fmt: skip
