@@ -44,6 +44,7 @@ def test_every_case_differs_from_the_config_by_one_thing() -> None:
         for config in case.by:
             assert config is None or config.objective == RUN.objective
             assert config is None or config.detector == RUN.detector
+            assert config is None or config.sweep == RUN.sweep
 
 
 def test_a_membrane_moves_the_phase_and_hardly_the_slope(few: xr.Dataset) -> None:
@@ -55,19 +56,21 @@ def test_a_membrane_moves_the_phase_and_hardly_the_slope(few: xr.Dataset) -> Non
 
 def test_changes_are_from_the_same_scheme_s_configured_scene(few: xr.Dataset) -> None:
     slope, change = few["scene_phase_slope"], few["scene_slope_change"]
-    xr.testing.assert_allclose(change, (slope - slope.isel(case=0)))
+    np.testing.assert_allclose(change.values, (slope - slope.isel(case=0)).values)
     assert (few["scene_mean_change"].isel(case=0) == 0).all()
 
 
 def test_a_far_neighbour_a_thin_sheath_and_a_far_cover_do_little(few: xr.Dataset) -> None:
     held = few.sel(estimator="sinusoid", focus_mode="held")["scene_worst_change"]
-    assert float(held.sel(case="neighbour beside at 2000 nm", scheme="paths")) < 1e-3
+    assert float(held.sel(case="neighbour beside at 2000 nm", scheme="paths")) < 5e-3
     assert float(held.sel(case="myelin of n 1.44, 1 nm", scheme="fullwave")) < 0.1
     assert float(held.sel(case="cover glass at 20 µm", scheme="paths")) < 0.3
 
 
 def test_what_no_scheme_of_the_dataset_does_is_said(few: xr.Dataset) -> None:
     status = few["case_status"]
+    beside = status.sel(case="neighbour beside at 2000 nm", scheme="fullwave")
+    assert beside == CaseStatus.TOO_LONG
     tilted = status.sel(case="elevation 1 °")
     assert tilted.sel(scheme="fullwave") == CaseStatus.NOT_BY_THIS_SCHEME
     assert tilted.sel(scheme="vogel") == CaseStatus.MEASURED

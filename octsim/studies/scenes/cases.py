@@ -22,6 +22,9 @@ _MEMBRANES = (3, 5, 8)  # nm
 _NEIGHBOURS = (0, 20, 50, 100, 200, 500, 1000, 2000)  # nm
 _ELEVATIONS = (0.5, 1.0, 2.0, 5.0)  # deg
 _COVERS = (3, 5, 10, 20)  # µm
+_NEIGHBOUR, _COVER = "neighbour beside at", "cover glass at"
+_HIGHEST = 5
+"""Height of a cover glass, µm, above which Maxwell's equations take more than a second a point."""
 
 
 class CaseStatus(IntEnum):
@@ -30,6 +33,8 @@ class CaseStatus(IntEnum):
     MEASURED = 0
     NOT_BY_THIS_SCHEME = 1
     """The scheme can't do this scene; another of the dataset's may."""
+    TOO_LONG = 2
+    """The scheme can, in seconds to minutes a point: a run of the scene itself does it."""
 
 
 class Case(NamedTuple):
@@ -41,7 +46,9 @@ class Case(NamedTuple):
     """How much of it there is; 0 is none, or of an index that of what is around."""
     unit: str
     by: tuple[Config | None, ...]
-    """By each of `SCHEMES`; None where that can't."""
+    """By each of `SCHEMES`; None where that is not measured."""
+    long: bool = False
+    """Whether Maxwell's equations take too long for it."""
 
     @property
     def name(self) -> str:
@@ -64,16 +71,30 @@ def cases(config: Config) -> list[Case]:
             "scene.cylinders: nothing in it is swept, but scenes varies what is around a cylinder "
             "that is; leave the diameter of one out"
         )
-    first = Case(AS_CONFIGURED, 0.0, "", _by_each(config, {}))
-    varied = (
-        Case(quantity, value, unit, _by_each(config, overlay))
-        for quantity, value, unit, overlay in _varied(config)
-    )
+    near = _of_the_sweep(config)
+    first = _case(near, AS_CONFIGURED, 0.0, "", {})
+    varied = (_case(near, *one) for one in _varied(near))
     return [first, *(case for case in varied if any(case.by))]
 
 
-def _by_each(config: Config, overlay: Overlay) -> tuple[Config | None, ...]:
-    return tuple(_possible(by(config), overlay) for by in _BY.values())
+def _of_the_sweep(config: Config) -> Config:
+    """Return a config, not checked, that has no diameters but the sweep's: what is beside fits."""
+    ends = config.sweep.diameters
+    law = config.focus_law.diameters.model_copy(update={"start": ends.start, "stop": ends.stop})
+    return config.model_copy(
+        update={
+            "focus_law": config.focus_law.model_copy(update={"diameters": law}),
+            "focus_scan": config.focus_scan.model_copy(update={"diameter": ends.start}),
+        }
+    )
+
+
+def _case(config: Config, quantity: str, value: float, unit: str, overlay: Overlay) -> Case:
+    long = quantity == _NEIGHBOUR or (quantity == _COVER and value > _HIGHEST)
+    by = [_possible(by(config), overlay) for by in _BY.values()]
+    if long:
+        by[SCHEMES.index("fullwave")] = None
+    return Case(quantity, value, unit, tuple(by), long)
 
 
 def _possible(config: Config, overlay: Overlay) -> Config | None:
@@ -97,12 +118,12 @@ def _varied(config: Config) -> Iterator[tuple[str, float, str, Overlay]]:
         laid = shell("sheath", index, f"{_OF_SHELL} nm")(config)
         yield from _laid(f"shell of {_OF_SHELL} nm, n", index, "", laid)
     for beside in _NEIGHBOURS:
-        yield from _laid("neighbour beside at", beside, "nm", _neighbour(config, 1e-3 * beside))
+        yield from _laid(_NEIGHBOUR, beside, "nm", _neighbour(config, 1e-3 * beside))
     for degrees in _ELEVATIONS:
         laid = of_cylinder(elevation=f"{degrees} deg")(config)
         yield from _laid("elevation", degrees, "°", laid)
     for height in _COVERS:
-        yield from _laid("cover glass at", height, "µm", _cover(config, height))
+        yield from _laid(_COVER, height, "µm", _cover(config, height))
 
 
 def _laid(

@@ -23,7 +23,7 @@ from octsim.studies.validity.errors import ESTIMATORS, FOCUS_MODES, Seen, seen
 from octsim.studies.validity.study import windows
 
 Array = NDArray[np.float64]
-DIAMETERS = 11
+DIAMETERS = 7
 """Of the sweep's range, ends included."""
 
 
@@ -106,6 +106,7 @@ def _variables(
     fringe = np.full((*shape, number), FringeStatus.NO_LIGHT)
     status = np.full((*shape, number), AccuracyStatus.NOT_CONTROLLED)
     measured = np.full(shape, CaseStatus.NOT_BY_THIS_SCHEME)
+    measured[[case.long for case in every], SCHEMES.index("fullwave")] = CaseStatus.TOO_LONG
     for at, row in table.items():
         measured[at] = CaseStatus.MEASURED
         slope[at] = np.moveaxis(np.array([one.slope for one in row]), 0, -1)
