@@ -95,9 +95,7 @@ def _sum_cells(
         count += 1
         if count < LANES and number + 1 < total:
             continue
-        follow(
-            faces, face, through, meetings, beam, count, detector, focus, STRAIGHT, rays, bundle
-        )
+        follow(faces, face, through, meetings, beam, count, detector, focus, STRAIGHT, rays, bundle)
         for i in range(count):
             if not bundle.followed[i]:
                 continue

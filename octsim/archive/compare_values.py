@@ -13,7 +13,7 @@ MEASURED = frozenset(
     {
         "cpu_seconds", "peak_memory", "estimator_seconds", "phase_slope_frontier",
         "maxwell_frontier", "maxwell_slope_frontier", "baseline_seconds", "cost_ratio",
-        "pair_cost_ratio",
+        "pair_cost_ratio", "effect_cost_ratio",
     }
 )  # fmt: skip
 """Variables that a clock or the system gave, or that follow from one: another run has others."""

@@ -36,6 +36,10 @@ class Falloff(Protocol):
         """
         ...
 
+    def __hash__(self) -> int:
+        """Return the same for the same falloff."""
+        ...
+
     def amplitude(self, squared: NDArray[np.float64], wavenumber: float) -> NDArray[np.float64]:
         """Return the factors on the amplitudes, within the reach.
 

@@ -34,6 +34,10 @@ class Material(Protocol):
         """Return dn/dk at a wavenumber, 1/µm in vacuum; µm."""
         ...
 
+    def __hash__(self) -> int:
+        """Return the same for the same material."""
+        ...
+
 
 @dataclass(frozen=True)
 class Constant:

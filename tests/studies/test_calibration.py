@@ -291,7 +291,8 @@ def test_rays_that_nothing_is_known_of_have_no_error_and_say_so(
          r"calibration\.scheme: fullwave given, but .*numerical_aperture: 1\.4 given"),
         ({"calibration": {"scheme": "paths"}, "tracing": {"scheme": "vogel"},
           "beam": {"waist": "diffraction"}},
-         r"calibration\.scheme: paths given, which has rays that meet in the focus, and beam\.waist"),
+         r"calibration\.scheme: paths given, which has rays that meet in the focus, and "
+         r"beam\.waist"),
         ({"budget": {"cpu_hours": 0.001}}, r"budget\.cpu_hours: 0\.001 given, but a calibration"),
     ],
 )  # fmt: skip

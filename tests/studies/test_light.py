@@ -60,7 +60,7 @@ class Remembered(Points):
 
 def of_tradeoff(**keywords: Any) -> xr.Dataset:
     chosen = [s for s in settings(SMALL) if (s.factor, s.value) in {("tracing.rays", 100)}]
-    return tradeoff(SMALL, chosen=chosen, separate=False, **keywords)
+    return tradeoff(SMALL, chosen=chosen, separate=False, tried=(), **keywords)
 
 
 def of_action_potential(**keywords: Any) -> xr.Dataset:

@@ -40,11 +40,13 @@ CHOSEN = {
     "sweep.diameters.num": (5,),
 }
 
+TRIED = ("attenuation of neuron 100 /cm", "falloff top hat")
+
 
 @pytest.fixture(scope="module")
 def measured() -> xr.Dataset:
     chosen = [s for s in settings(TINY) if s.value in CHOSEN.get(s.factor, ())]
-    return tradeoff(TINY, 2, chosen=chosen, separate=False)
+    return tradeoff(TINY, 2, chosen=chosen, separate=False, tried=TRIED)
 
 
 def of(measured: xr.Dataset, factor: str, name: str) -> NDArray[np.float64]:
@@ -192,7 +194,7 @@ def test_where_maxwell_is_not_solved_the_trade_is_one_of_rays_and_says_why() -> 
     assert "fullwave" in why_no_maxwell(steep)
     assert OF_WAVES not in {setting.factor for setting in settings(steep, waves=False)}
     chosen = [s for s in settings(steep, waves=False) if s.value == 300]
-    trade = tradeoff(steep, 2, chosen=chosen, separate=False)
+    trade = tradeoff(steep, 2, chosen=chosen, separate=False, tried=())
     assert np.isnan(trade["maxwell_spectrum_worst_error"]).all()
     assert trade.attrs["maxwell"] == why_no_maxwell(steep)
     with look():
@@ -204,3 +206,21 @@ def test_a_shape_is_the_spectrum_over_its_mean() -> None:
     assert shape_errors(5 * exact, exact) == pytest.approx(0)
     # means 2 and 2.5: shapes 0.5, 1.5, 1 and 0.4, 1.2, 1.4
     assert shape_errors(np.array([[1.0, 3.0, 3.5]]), exact) == pytest.approx(0.4 / 1.5)
+
+
+def test_effects_cost_and_change_what_they_do_by_each_scheme(measured: xr.Dataset) -> None:
+    assert measured["effect"].values.tolist() == list(TRIED)
+    schemes = ["vogel, 3000 rays", "paths, 0.0001", "paths, 1e-06", "fullwave, 0.0001"]
+    assert measured["effect_scheme"].values.tolist() == schemes
+    taken, top_hat = measured["effect_intensity_change"].values
+    status = measured["effect_status"].values
+    # of a neuron of 1 µm, twice through: 1 − e^(−2 · 0.01 / µm), of a part of the field
+    assert ((taken[:] > 1e-3) & (taken[:] < 0.04)).all()
+    assert taken[1] == pytest.approx(taken[2], rel=1e-2)
+    assert (top_hat[:3] > 1).all()
+    # what a scheme can't do has a status beside its NaN
+    assert np.isnan(top_hat[3])
+    assert status[1].tolist() == [0, 0, 0, 1]
+    ratio = measured["effect_cost_ratio"].values
+    assert (np.isfinite(ratio) == np.isfinite(measured["effect_intensity_change"].values)).all()
+    assert (ratio[np.isfinite(ratio)] > 0).all()

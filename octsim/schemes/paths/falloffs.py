@@ -4,6 +4,7 @@ The distance is that from the axis over the radius within which light is accepte
 """
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 
 from octsim.optics.detector import falloff
 from octsim.optics.falloff import Falloff, Parabolic
+from octsim.schemes.band_nodes import to_coefficients
 
 _MOST_COEFFICIENTS = 60
 _LEFT_OUT = 1e-14
@@ -34,6 +36,7 @@ class Series(NamedTuple):
     """Amplitude where it ends."""
 
 
+@cache
 def series_of(model: Falloff, reach: float, wavenumber: float) -> Parabola | Series:
     """Return a falloff for compiled code.
 
@@ -51,18 +54,21 @@ def series_of(model: Falloff, reach: float, wavenumber: float) -> Parabola | Ser
     def over_square(place: NDArray[np.float64]) -> NDArray[np.float64]:
         return model.amplitude((place + 1) / 2 * reach**2, wavenumber)
 
-    at = chebyshev.chebpts1(_MOST_COEFFICIENTS)
-    fitted = chebyshev.chebfit(at, over_square(at), _MOST_COEFFICIENTS - 1)
-    coefficients = np.asarray(fitted, np.float64)
+    coefficients = to_coefficients(_MOST_COEFFICIENTS) @ over_square(
+        chebyshev.chebpts1(_MOST_COEFFICIENTS)
+    )
     there = np.flatnonzero(np.abs(coefficients) > _LEFT_OUT)
     edge = float(over_square(np.ones(1))[0])
     return Series(coefficients[: there.max(initial=0) + 1].copy(), edge)
 
 
 def falloff_at(model: Parabola | Series, squared: float, and_squared: float) -> float:
-    """Return a falloff at a distance whose square is given in two parts, those of x and y."""
+    """Return a falloff at a distance whose square is given in two parts, those of x and y.
+
+    Beyond the edge, where a rougher map may put light, a series is what it is there.
+    """
     if isinstance(model, Series):
-        return _sum(model.coefficients, squared + and_squared)
+        return _sum(model.coefficients, min(squared + and_squared, 1.0))
     return falloff(squared, and_squared)
 
 
@@ -81,5 +87,7 @@ def _sum(coefficients: NDArray[np.float64], squared: float) -> float:
 @overload(falloff_at, strict=False)
 def _compile_falloff_at(model: Any, squared: Any, and_squared: Any) -> Callable[..., Any]:  # noqa: ARG001
     if model.instance_class is Series:
-        return lambda model, squared, and_squared: _sum(model.coefficients, squared + and_squared)
+        return lambda model, squared, and_squared: _sum(
+            model.coefficients, min(squared + and_squared, 1.0)
+        )
     return lambda model, squared, and_squared: falloff(squared, and_squared)  # noqa: ARG005

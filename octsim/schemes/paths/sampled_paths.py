@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -21,13 +21,21 @@ from octsim.schemes.band_nodes import nodes_within, to_coefficients
 from octsim.schemes.field_sum import relative_error
 from octsim.schemes.light import AccuracyStatus, Light, Optics, Sampled, attenuated
 from octsim.schemes.paths.path_sum import field_of_paths
-from octsim.schemes.paths.weighed import Followed, Weighed, followed, weighed
+from octsim.schemes.paths.tables_of_indices import phase_left_out
+from octsim.schemes.paths.weighed import Followed, Weighed, are_weighed, followed, weighed
 
 _FASTEST, _SLOWEST = 0.003, 0.97  # fall of coefficients, from two to the next two
+_FEWEST = 5  # nodes of a part of the band
+_NOISY = 4.0
+"""Coefficients below as many times the error at nodes may be nothing else."""
 _PHASE_DEGREE = 2
 _ATTEMPTS, _BETTER = 3, 0.1
 """Integrals of one node, at most, and how much smaller the error of the next one is."""
+_FOR_PEAK = 64
+"""Wavenumbers at which the largest field is looked for."""
 _HALF = 0.5  # of the accuracy, for the nodes and for what is between them
+
+Result = TypeVar("Result")
 
 
 class _Node(NamedTuple):
@@ -40,7 +48,13 @@ class _Node(NamedTuple):
     """(C, P)."""
     length: NDArray[np.float64]
     """Mean optical path, (P,), µm."""
-    error: float
+    errors: NDArray[np.float64]
+    """Of the fields, (P,)."""
+
+    @property
+    def error(self) -> float:
+        """Of the whole field."""
+        return float(self.errors.sum()) + self.light.missing
 
 
 @dataclass(frozen=True)
@@ -63,22 +77,37 @@ class _Point:
         ))  # fmt: skip
 
 
+def _reached(
+    accuracy: float, first: float, find: Callable[[float], tuple[Result, float]]
+) -> tuple[Result, float]:
+    """Ask for less and less error until what is found is accurate; return it, and its error."""
+    asked = first
+    for _ in range(_ATTEMPTS):
+        found, error = find(asked)
+        if error <= accuracy:
+            break
+        asked *= _BETTER
+    return found, error
+
+
 def light_of_paths(
     optics: Optics, scene: Scene, focus: float, accuracy: float, lengths: bool
 ) -> Light:
     """Return the rays of a point that serve all wavenumbers, with the weights of all effects."""
-    asked, middle = accuracy, sum(optics.band) / 2
-    for _ in range(_ATTEMPTS):
+    middle, some = sum(optics.band) / 2, np.linspace(*optics.band, _FOR_PEAK)
+
+    def find(asked: float) -> tuple[Light, float]:
         rays = followed(optics, scene, focus, middle, asked, lengths)
         light = weighed(optics, scene, rays, middle).light
+        if not are_weighed(optics):
+            return light, 0.0  # but for the error that the integration knows of
         found = field_of_paths(
             light.path, light.amplitude, light.rough_amplitude, light.optical_path_length,
-            light.missing, optics.wavenumber, asked,
+            light.missing, some, asked,
         )  # fmt: skip
-        error = relative_error(float(np.abs(found.values).max(initial=0.0)), found.error)
-        if error <= accuracy:
-            break
-        asked *= _BETTER
+        return light, relative_error(float(np.abs(found.values).max(initial=0.0)), found.error)
+
+    light, error = _reached(accuracy, accuracy, find)
     return light._replace(status=_worst([light.status], error, accuracy))
 
 
@@ -100,18 +129,17 @@ def sampled_paths(
     """
     if not optics.varies:
         return _of_one_node(optics, scene, focus, accuracy, lengths)
-    point, asked = _Point(optics, scene, focus, lengths), _HALF * accuracy
-    for _ in range(_ATTEMPTS):
+    point = _Point(optics, scene, focus, lengths)
+
+    def find(asked: float) -> tuple[tuple[NDArray[np.complex128], float, list[Light]], float]:
         values, errors, lights = _over_band(point, optics.wavenumber, asked, 0.0)
-        error = max(errors)
-        largest = float(np.sqrt((np.abs(values) ** 2).mean(axis=0).max(initial=0.0)))
-        if relative_error(largest, error) <= accuracy:
-            break
-        asked *= _BETTER
+        return (values, max(errors), lights), _relative_error(values, max(errors))
+
+    (values, error, lights), relative = _reached(accuracy, _HALF * accuracy, find)
     statuses = [one.status for one in lights]
     light = lights[len(lights) // 2]._replace(
         segments=sum(one.segments for one in lights),
-        status=_worst(statuses, relative_error(largest, error), accuracy),
+        status=_worst(statuses, relative, accuracy),
     )
     return Sampled(light, optics.wavenumber, values, error)
 
@@ -124,19 +152,20 @@ def _over_band(
     A path whose light ceases to be detected somewhere in the band is no polynomial there: the band
     is halved until that matters no more. `scale` is the largest field that is known of elsewhere.
     """
-    number = math.ceil(4 - math.log10(accuracy) / 3)
+    number = max(math.ceil(1 - 0.95 * math.log10(accuracy)), _FEWEST)
     if k.size <= number:
         each = [_node(point, one, accuracy) for one in k.tolist()]
         values = np.stack([one.fields.sum(axis=1) for one in each], axis=1)
         return values, [one.error for one in each], [one.light for one in each]
-    if point.scene.rows_within(k[0], k[-1]):
-        # a table turns at its rows, maybe between nodes that are too far apart to see it
+    off = phase_left_out(point.scene, point.optics.detector, point.focus, k[0], k[-1], number)
+    if off > accuracy:
         return _in_halves(point, k, accuracy, scale)
     at = nodes_within(k[0], k[-1], number)
     each = [_node(point, one, accuracy) for one in at.tolist()]
     lights = [one.light for one in each]
-    phase, slow = _coefficients(each)
-    left = _left_out(np.abs(slow))
+    phase, slow, noise = _coefficients(each)
+    sizes = np.abs(slow)
+    left = _left_out(sizes, noise) + off * float(sizes.sum(axis=(0, 2)).max(initial=0.0))
     scale = max(scale, *(_size(one) for one in each))
     if relative_error(scale, left) > accuracy:
         values, errors, more = _in_halves(point, k, accuracy, scale)
@@ -156,11 +185,18 @@ def _in_halves(
     return values, first[1] + second[1], first[2] + second[2]
 
 
-def _left_out(sizes: NDArray[np.float64]) -> float:
-    """Return what Chebyshev coefficients (M, C, P) of paths say of those that would follow."""
+def _left_out(sizes: NDArray[np.float64], noise: NDArray[np.float64]) -> float:
+    """Return what Chebyshev coefficients (M, C, P) of paths say of those that would follow.
+
+    `noise` (P,) is what the fields at the nodes are off.
+    """
     last, before = sizes[-2:].sum(axis=0), sizes[-4:-2].sum(axis=0)
     fall = np.clip(last / np.where(before > 0, before, 1), _FASTEST, _SLOWEST)
-    left = (2 * last * fall / (1 - fall)).sum(axis=-1)
+    left = 2 * last * fall / (1 - fall)
+    # coefficients that noise makes do not fall, and say nothing of others
+    left = np.where(last < _NOISY * noise, np.minimum(left, _NOISY * noise), left)
+    # a faint path is there at some nodes only; what it can leave out is no more than all of it
+    left = np.minimum(left, sizes.sum(axis=0)).sum(axis=-1)
     return float(left.max(initial=0.0))
 
 
@@ -168,13 +204,14 @@ def _of_one_node(
     optics: Optics, scene: Scene, focus: float, accuracy: float, lengths: bool
 ) -> Sampled:
     """Return the light of rays that are the same at all wavenumbers, in each detected field."""
-    k, asked, middle = optics.wavenumber, accuracy, sum(optics.band) / 2
-    for _ in range(_ATTEMPTS):
+    k, middle = optics.wavenumber, sum(optics.band) / 2
+
+    def find(asked: float) -> tuple[Sampled, float]:
         rays = followed(optics, scene, focus, middle, asked, lengths)
         found = weighed(optics, scene, rays, middle)
         light = attenuated(found.light, scene, middle)
-        rows, values, error = _rows(optics, found), [], 0.0
-        for row in rows:
+        values, error = [], 0.0
+        for row in _rows(optics, found):
             parts = [
                 field_of_paths(
                     light.path, light.amplitude * part, light.rough_amplitude * part,
@@ -185,12 +222,17 @@ def _of_one_node(
             values.append(parts[0].values[0] + 1j * parts[1].values[0])
             error = max(error, float(np.hypot(parts[0].error, parts[1].error)))
         whole = np.stack(values)
-        largest = float(np.sqrt((np.abs(whole) ** 2).mean(axis=0).max(initial=0.0)))
-        if relative_error(largest, error) <= accuracy:
-            break
-        asked *= _BETTER
-    status = _worst([light.status], relative_error(largest, error), accuracy)
-    return Sampled(light._replace(status=status), k, whole, error)
+        return Sampled(light, k, whole, error), _relative_error(whole, error)
+
+    found, relative = _reached(accuracy, accuracy, find)
+    rays = found.rays
+    return found._replace(rays=rays._replace(status=_worst([rays.status], relative, accuracy)))
+
+
+def _relative_error(values: NDArray[np.complex128], error: float) -> float:
+    """Return the error of the intensity of fields (C, K), over its largest."""
+    largest = float(np.sqrt((np.abs(values) ** 2).mean(axis=0).max(initial=0.0)))
+    return relative_error(largest, error)
 
 
 def _node(point: _Point, k: float, accuracy: float) -> _Node:
@@ -208,8 +250,8 @@ def _node(point: _Point, k: float, accuracy: float) -> _Node:
     fields, size = of_paths(light.amplitude * turned), of_paths(np.abs(light.amplitude))
     rough = of_paths(light.rough_amplitude * turned)
     reach = of_paths(np.abs(light.amplitude) * light.optical_path_length)
-    error = float(np.abs(rough - fields).sum(axis=-1).max(initial=0.0)) + light.missing
-    return _Node(light, k, light.path[begin], fields, reach / np.where(size > 0, size, 1), error)
+    errors = np.abs(rough - fields).max(axis=0)
+    return _Node(light, k, light.path[begin], fields, reach / np.where(size > 0, size, 1), errors)
 
 
 def _size(node: _Node) -> float:
@@ -218,14 +260,18 @@ def _size(node: _Node) -> float:
 
 def _coefficients(
     each: Sequence[_Node],
-) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
-    """Return Chebyshev coefficients of each path's phase, (M, P), and slow field, (M, C, P)."""
+) -> tuple[NDArray[np.float64], NDArray[np.complex128], NDArray[np.float64]]:
+    """Return Chebyshev coefficients of each path's phase, (M, P), and slow field, (M, C, P).
+
+    The last is the largest error of its field at the nodes, (P,).
+    """
     codes = np.unique(np.concatenate([one.codes for one in each]))
     fields = np.zeros((len(each), each[0].fields.shape[0], codes.size), np.complex128)
-    length = np.full((len(each), codes.size), np.nan)
+    length, noise = np.full((len(each), codes.size), np.nan), np.zeros(codes.size)
     for node, one in enumerate(each):
         column = np.searchsorted(codes, one.codes)
         fields[node][:, column], length[node, column] = one.fields, one.length
+        noise[column] = np.maximum(noise[column], one.errors)
     # where a path is too faint to be there, any length will do
     length = np.where(np.isnan(length), np.nanmean(length, axis=0), length)
     place, k = chebyshev.chebpts1(len(each)), np.array([one.k for one in each])
@@ -233,7 +279,7 @@ def _coefficients(
     phase = chebyshev.chebfit(place, k[:, np.newaxis] * length, _PHASE_DEGREE)
     turned = np.exp(-1j * chebyshev.chebval(place, phase)).T
     slow = fields * turned[:, np.newaxis]
-    return phase, np.tensordot(to_coefficients(len(each)), slow, axes=1)
+    return phase, np.tensordot(to_coefficients(len(each)), slow, axes=1), noise
 
 
 def _rows(optics: Optics, found: Weighed) -> NDArray[np.complex128]:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.optics.beam import Beam
+from octsim.optics.pupil import UniformPupil
 from octsim.optics.scene import Scene, Symmetry
 from octsim.optics.turned_rays import STRAIGHT, Straight, Turning, through_lens, turning
 from octsim.schemes.light import Light, Optics
@@ -88,16 +89,21 @@ def followed(
         regions = len(scene.regions)
         carry = with_lengths(carry, regions)
     numbers = np.zeros((FIRST_CARRIED + carry.size, found.light.path.size))
-    follow, (vx, vy, _) = make_path_tracer(carry), found.launched
-    asked = effects.vectorial or effects.aplanatic or effects.aberration is not None or lengths
-    for code in np.unique(found.light.path) if asked else ():
-        on = np.flatnonzero(found.light.path == code)
-        x, y = vx[on], vy[on]
-        beam = Beam(x, y, np.sqrt(1 - x * x - y * y), np.ones(on.size), np.arange(on.size))
-        numbers[:, on] = follow(found.faces, int(code), through_lens(beam, lens), within, height)
+    if effects.vectorial or effects.aplanatic or effects.aberration is not None or lengths:
+        vx, vy, _ = found.launched
+        beam = Beam(vx, vy, np.sqrt(1 - vx * vx - vy * vy), np.ones(vx.size), np.arange(vx.size))
+        follow = make_path_tracer(carry)
+        numbers = follow(found.faces, found.light.path, through_lens(beam, lens), within, height)
     # nodes that do not take their path have no weight
     numbers = np.nan_to_num(numbers, nan=0.0)
     return Followed(found, numbers, regions)
+
+
+def are_weighed(optics: Optics) -> bool:
+    """Return whether an instrument does to rays what their integration does not know of."""
+    effects = optics.effects
+    phase = effects.aberration is not None and not effects.turned
+    return effects.aplanatic or phase or optics.pupil != UniformPupil()
 
 
 def weighed(optics: Optics, scene: Scene, found: Followed, k: float) -> Weighed:

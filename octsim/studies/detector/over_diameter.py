@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.phase.derivatives import wrapped
-from octsim.phase.slopes import gradient
+from octsim.phase.slopes import gradient, line_slope
 
 Array = NDArray[np.float64]
 
@@ -43,9 +43,7 @@ def over_diameter(diameter: Array, phase: Array, predicted: float) -> OverDiamet
 def _line(diameter: Array, turned: Array) -> float:
     """Return the slope of the line through phases that turn slowly, by least squares."""
     known = np.isfinite(turned)
-    if known.sum() < 2:
-        return np.nan
-    return float(np.polyfit(diameter[known], np.unwrap(turned[known]), 1)[0])
+    return line_slope(diameter[known], np.unwrap(turned[known]))
 
 
 def root_mean_square(values: Array) -> Array:

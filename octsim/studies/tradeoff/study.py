@@ -15,6 +15,7 @@ from octsim.instrument.points import Points
 from octsim.stages.focus_law import focus_law, sweep_foci
 from octsim.stages.focus_sweep import focus_sweep
 from octsim.stages.gaussian_fits import gaussian_fits
+from octsim.studies.tradeoff.effect_costs import EFFECTS, effect_costs
 from octsim.studies.tradeoff.errors import (
     Errors,
     MaxwellErrors,
@@ -52,6 +53,7 @@ def tradeoff(
     chosen: Iterable[Setting] | None = None,
     separate: bool = True,
     points: Points | None = None,
+    tried: Iterable[str] = EFFECTS,
 ) -> xr.Dataset:
     """Return what each setting costs and how far it is from a converged reference.
 
@@ -72,12 +74,15 @@ def tradeoff(
         Whether each is measured in a process of its own, without which memory says little.
     points : Points, optional
         Where light that was found before is kept; what is measured is found anew.
+    tried : iterable of str
+        Effects that are measured by each scheme, by their names in `effects.nc`.
 
     Returns
     -------
     Dataset
-        Errors, costs, and whether it is efficient, of each setting; and how many times fewer
-        segments light paths need than counted rays, for each target error.
+        Errors, costs, and whether it is efficient, of each setting; how many times fewer segments
+        light paths need than counted rays, for each target error; and what effects cost and change
+        by each scheme.
     """
     unsolved = why_no_maxwell(config)
     listed = list(settings(config, waves=not unsolved) if chosen is None else chosen)
@@ -110,7 +115,8 @@ def tradeoff(
         **_law_errors(laws, FocusLine.fitted(law), config),
         **_changes(listed, costs),
     }
-    return _dataset(config, listed, variables).assign_attrs(maxwell=unsolved or _maxwell_is(config))
+    table = _dataset(config, listed, variables, effect_costs(config, line, tried))
+    return table.assign_attrs(maxwell=unsolved or _maxwell_is(config))
 
 
 def _maxwell_is(config: Config) -> str:
@@ -186,7 +192,12 @@ def _changes(listed: list[Setting], costs: list[MeasuredCost]) -> dict[str, Any]
     return {"intensity_change": ("setting", change)}
 
 
-def _dataset(config: Config, listed: list[Setting], variables: dict[str, Any]) -> xr.Dataset:
+def _dataset(
+    config: Config,
+    listed: list[Setting],
+    variables: dict[str, Any],
+    effects: tuple[dict[str, Any], dict[str, Any]],
+) -> xr.Dataset:
     value = np.array([setting.value for setting in listed], float)
     factor = np.array([setting.factor for setting in listed])
     column = {name: values for name, (_, values) in variables.items()}
@@ -220,6 +231,7 @@ def _dataset(config: Config, listed: list[Setting], variables: dict[str, Any]) -
             **comparison(factor, value, segments, error),
             **{name: ("setting", flag.astype(np.int8)) for name, flag in flags.items()},
             "preset": ("setting", [preset_of(setting) for setting in listed]),
+            **effects[0],
         },
         {
             "setting": [f"{setting.factor} {setting.value:g}" for setting in listed],
@@ -227,6 +239,7 @@ def _dataset(config: Config, listed: list[Setting], variables: dict[str, Any]) -
             "value": ("setting", value),
             "scheme": ("setting", [setting.config.tracing.scheme for setting in listed]),
             "target": [f"error of {COUNTED} rays", *(f"{target:g}" for target in TARGETS)],
+            **effects[1],
         },
     )
 

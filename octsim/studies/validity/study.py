@@ -69,9 +69,10 @@ def validity(
     """Compare rays with Maxwell's equations for the config's instrument, and others near it.
 
     The pupil, the numerical aperture, the index of the neuron and the gap are varied, one at a
-    time, for rays and waves alike; a pupil weighs rays as they are launched. The focus is that of the config's law, and
-    follows the diameter or is held while a slope is taken; slopes are by the thesis's Fourier
-    transform and by a least-squares sinusoid at the nominal depth of each diameter.
+    time, for rays and waves alike; a pupil weighs rays as they are launched. The focus is that of
+    the config's law, and follows the diameter or is held while a slope is taken; slopes are by the
+    thesis's Fourier transform and by a least-squares sinusoid at the nominal depth of each
+    diameter.
 
     Parameters
     ----------
