@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from octsim.schemes.fullwave.bessel import Cylindrical, Kinds, kinds
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 from octsim.schemes.fullwave.orders import waves_along
+from octsim.schemes.fullwave.two_by_two import matrix, solved, times
 
 Array = NDArray[Any]
 
@@ -27,7 +28,7 @@ class Scattering(NamedTuple):
     """Its Debye term p = 2: in, reflected once inside, and out."""
 
 
-class _Side(NamedTuple):
+class Side(NamedTuple):
     """What the boundary condition needs of one medium."""
 
     n: complex
@@ -53,7 +54,7 @@ def scattering(
     """
     neuron = complex(scene.n_neuron, scene.kappa) if scene.kappa else scene.n_neuron
     outside, inside = (
-        _side(index, along, k, waves, scene.radius) for index in (scene.n_water, neuron)
+        side_of(index, along, k, waves, scene.radius) for index in (scene.n_water, neuron)
     )
     size = scene.radius * k[:, np.newaxis]
     in_water, within = (kinds(size * side.kappa, waves) for side in (outside, inside))
@@ -61,7 +62,7 @@ def scattering(
     at_boundary = (
         _boundary(one, outside, core, inside) for one in (in_water.outgoing, in_water.regular)
     )
-    whole = -_solved(*at_boundary)
+    whole = -solved(*at_boundary)
     # those beyond scatter nothing but rounding, by which the coupling, which grows with the order,
     # would be overwhelmed
     kept = np.arange(waves + 1) <= waves_along(scene, along, k, waves)[..., np.newaxis]
@@ -69,14 +70,15 @@ def scattering(
     return Scattering(*(one * kept for one in (whole, *debye)))
 
 
-def _side(
+def side_of(
     index: complex, along: NDArray[np.float64], k: NDArray[np.float64], waves: int, radius: float
-) -> _Side:
+) -> Side:
+    """Return what the boundary condition needs of a medium at a radius (µm)."""
     # beyond the medium's index light decays in it
     kappa = np.emath.sqrt(index**2 - along**2)
     m = np.arange(waves + 1)
     skew = 1j * along[:, np.newaxis] * m / (radius * k[:, np.newaxis, np.newaxis])
-    return _Side(index, kappa, skew / (kappa**2)[:, np.newaxis])
+    return Side(index, kappa, skew / (kappa**2)[:, np.newaxis])
 
 
 def _scaled(one: Cylindrical) -> Cylindrical:
@@ -89,57 +91,37 @@ def _scaled(one: Cylindrical) -> Cylindrical:
     return Cylindrical(one.value * scale, one.slope * scale)
 
 
-def _boundary(outer: Cylindrical, outside: _Side, core: Cylindrical, inside: _Side) -> Array:
+def _boundary(outer: Cylindrical, outside: Side, core: Cylindrical, inside: Side) -> Array:
     """Return N."""
     skew = (outside.skew - inside.skew) * (outer.value * core.value)
     there = outer.slope * core.value * (1 / outside.kappa)[:, np.newaxis]
     here = core.slope * outer.value * (1 / inside.kappa)[:, np.newaxis]
-    return _matrix(skew, there - here, inside.n**2 * here - outside.n**2 * there, skew)
+    return matrix(skew, there - here, inside.n**2 * here - outside.n**2 * there, skew)
 
 
-def _admittance(one: Cylindrical, side: _Side) -> Array:
+def admittance(one: Cylindrical, side: Side) -> Array:
     r"""Return the matrix from :math:`(E_y, H_y)` to what is continuous beside them.
 
     Relative to the function's own value, which never is 0.
     """
     turn = one.slope / one.value * (1 / side.kappa)[:, np.newaxis]
-    return _matrix(side.skew, turn, -(side.n**2) * turn, side.skew)
+    return matrix(side.skew, turn, -(side.n**2) * turn, side.skew)
 
 
-def _debye(outside: _Side, inside: _Side, in_water: Kinds, within: Kinds) -> tuple[Array, Array]:
+def _debye(outside: Side, inside: Side, in_water: Kinds, within: Kinds) -> tuple[Array, Array]:
     """Return the terms p = 0, with diffraction, and p = 2.
 
     With what goes out (H⁽¹⁾) and in (H⁽²⁾) on both sides of the surface: reflection
     from outside and from inside, and transmission, which is one more.
     (Hovenac & Lock, JOSA A 9, 781 (1992); Lock, JOSA A 14, 640 (1997).)
     """
-    out_2, in_2 = (_admittance(one, outside) for one in in_water[1:])
-    out_3, in_3 = (_admittance(one, inside) for one in within[1:])
-    from_outside = _solved(in_3 - out_2, in_2 - in_3)
-    from_inside = _solved(out_2 - in_3, out_3 - out_2)
+    out_2, in_2 = (admittance(one, outside) for one in in_water[1:])
+    out_3, in_3 = (admittance(one, inside) for one in within[1:])
+    from_outside = solved(in_3 - out_2, in_2 - in_3)
+    from_inside = solved(out_2 - in_3, out_3 - out_2)
     one = np.eye(2).reshape(2, 2, 1, 1, 1)
     into, out = one + from_outside, one + from_inside
     turn_2, turn_3 = (one.outgoing.value / one.incoming.value for one in (in_water, within))
     near = (from_outside / turn_2 - one) / 2
-    far = _times(out, _times(from_inside, into)) * (turn_3**2 / turn_2 / 2)
+    far = times(out, times(from_inside, into)) * (turn_3**2 / turn_2 / 2)
     return near, far
-
-
-def _matrix(a: Array, b: Array, c: Array, d: Array) -> Array:
-    found = np.empty((2, 2, *a.shape), np.complex128)
-    found[0, 0], found[0, 1], found[1, 0], found[1, 1] = a, b, c, d
-    return found
-
-
-def _times(left: Array, right: Array) -> Array:
-    """Return the product of 2 × 2 matrices, their first two axes."""
-    (a, b), (c, d) = left
-    (e, f), (g, h) = right
-    return _matrix(a * e + b * g, a * f + b * h, c * e + d * g, c * f + d * h)
-
-
-def _solved(matrix: Array, right: Array) -> Array:
-    """Return matrix⁻¹ right, of 2 × 2 matrices."""
-    (a, b), (c, d) = matrix
-    found: Array = _times(_matrix(d, -b, -c, a), right) / (a * d - b * c)
-    return found

@@ -1,28 +1,51 @@
-"""The scene of the scheme fullwave: one cylinder over one plane, in numbers."""
+"""The scene of the scheme fullwave: one cylinder among planes, in numbers."""
 
 import math
+from itertools import pairwise
 from typing import NamedTuple
 
 from octsim.base.errors import OctsimError
-from octsim.optics.scene import Cylinder, Plane, Scene
+from octsim.optics.scene import Cylinder, Plane, Region, Scene
+
+
+class Layer(NamedTuple):
+    """Of a medium."""
+
+    n: complex
+    """n + iκ."""
+    thickness: float
+    """µm; without end for the last one above."""
 
 
 class CylinderOnPlane(NamedTuple):
-    """A cylinder of diameter d over the plane z = 0, its axis at x = offset; lengths in µm."""
+    """A cylinder of diameter d over planes, its axis at x = offset; lengths in µm.
+
+    The thesis's has one plane, z = 0. Others have films between glass and water, planes above the
+    water, or shells.
+    """
 
     n_glass: float
-    """Below the plane."""
+    """Below all planes."""
     n_water: float
     """Around the cylinder."""
     n_neuron: float
     """Of the cylinder."""
     gap: float
-    """Between plane and cylinder."""
+    """Between the plane below the water and the cylinder."""
     diameter: float
+    """Of the outermost surface."""
     offset: float = 0.0
     """Of the axis, across it, from the optical axis."""
     kappa: float = 0.0
     """Of the cylinder: κ of its index n + iκ."""
+    shells: tuple[Layer, ...] = ()
+    """Of the cylinder, outside in."""
+    films: tuple[Layer, ...] = ()
+    """Between glass and water, from below."""
+    room: float = math.inf
+    """Thickness of the water."""
+    above: tuple[Layer, ...] = ()
+    """Beyond it, from below."""
 
     @property
     def radius(self) -> float:
@@ -31,13 +54,42 @@ class CylinderOnPlane(NamedTuple):
 
     @property
     def height(self) -> float:
-        """Height of the axis over the plane, µm."""
+        """Height of the axis over the plane below the water, µm."""
         return self.gap + self.radius
 
     @property
+    def largest_index(self) -> float:
+        """Of the water, the cylinder and its shells."""
+        return max(self.n_neuron, self.n_water, *(shell.n.real for shell in self.shells))
+
+    @property
     def far_side(self) -> float:
-        """Optical path from the plane to the cylinder's far side, µm."""
-        return self.n_neuron * self.diameter + self.n_water * self.gap
+        """Optical path from the lowest plane to the cylinder's far side, or the highest plane, µm.
+
+        Light that returns from there is the last one, but for what goes to and fro.
+        """
+        films = _path(self.films)
+        if self.above:
+            return films + self.n_water * self.room + _path(self.above[:-1])
+        shells = _path(self.shells)
+        core = self.diameter - 2 * sum(shell.thickness for shell in self.shells)
+        return self.n_neuron * core + self.n_water * self.gap + 2 * shells + films
+
+    @property
+    def depth(self) -> float:
+        """From the lowest plane to the highest one, µm."""
+        if not self.above:
+            return sum(film.thickness for film in self.films)
+        return self.room + sum(layer.thickness for layer in (*self.films, *self.above[:-1]))
+
+    @property
+    def one_plane(self) -> bool:
+        """Whether there is but the plane between glass and water."""
+        return not self.films and not self.above
+
+
+def _path(layers: tuple[Layer, ...]) -> float:
+    return sum(layer.n.real * layer.thickness for layer in layers)
 
 
 def azimuth_of(scene: Scene) -> float:
@@ -51,28 +103,76 @@ def cylinder_on_plane(scene: Scene, wavenumber: float = 1.0) -> CylinderOnPlane:
     Raises
     ------
     OctsimError
-        If it is another scene than one cylinder over one plane, or light is lost outside of the
-        cylinder.
+        If it has another number of cylinders than one, it is not level, or light is lost in what
+        is below all planes or around the cylinder.
     """
-    match scene.surfaces:
-        case (Plane() as plane, Cylinder() as cylinder):
-            pass
-        case _:
-            raise OctsimError(
-                f"scene: {len(scene.surfaces)} surfaces given, but scheme fullwave solves for one "
-                "cylinder over one plane; give tracing.scheme: paths"
-            )
-    regions = plane.below, plane.above, cylinder.inside
-    glass, water, neuron = (region.material.index(wavenumber).real for region in regions)
-    for region in regions[:2]:
+    cylinder, shells = _one_cylinder(scene)
+    host, core = cylinder.outside, (shells[-1] if shells else cylinder).inside
+    for region in (scene.objective, host):
         if region.attenuates:
             raise OctsimError(
                 f"scene: {region.name} attenuates, but scheme fullwave has a cylinder alone that "
                 "does; give tracing.scheme: paths or vogel"
             )
+    planes = [surface for surface in scene.surfaces if isinstance(surface, Plane)]
+    below = [plane for plane in planes if plane.height <= cylinder.z - cylinder.radius]
+    above = planes[len(below) :]
+    floor = below[-1].height if below else 0.0
+    radii = [one.radius for one in (cylinder, *shells)]
+    thicknesses = (outer - inner for outer, inner in pairwise(radii))
+    films = zip((plane.above for plane in below[:-1]), _thickness(below), strict=True)
+    ends = [*_thickness(above), math.inf][: len(above)]
+    beyond = zip((plane.above for plane in above), ends, strict=True)
+    glass, water, neuron = (
+        region.material.index(wavenumber).real for region in (scene.objective, host, core)
+    )
     return CylinderOnPlane(
-        glass, water, neuron, cylinder.z - cylinder.radius - plane.height, 2 * cylinder.radius,
+        glass, water, neuron, cylinder.z - cylinder.radius - floor, 2 * cylinder.radius,
         # an axis turned about the vertical one through (x, 0) is closer
         cylinder.x * math.cos(cylinder.azimuth),
-        cylinder.inside.attenuation_at(wavenumber) / (2 * wavenumber),
+        core.attenuation_at(wavenumber) / (2 * wavenumber),
+        tuple(
+            _layer(one.outside, thickness, wavenumber)
+            for one, thickness in zip(shells, thicknesses, strict=True)
+        ),
+        tuple(_layer(*film, wavenumber) for film in films),
+        above[0].height - floor if above else math.inf,
+        tuple(_layer(*layer, wavenumber) for layer in beyond),
     )  # fmt: skip
+
+
+def _one_cylinder(scene: Scene) -> tuple[Cylinder, list[Cylinder]]:
+    """Return the outermost surface of a scene's cylinder, and those within it, outside in."""
+    outermost: list[Cylinder] = []
+    shells: list[Cylinder] = []
+    for surface in scene.surfaces:
+        if isinstance(surface, Plane):
+            continue
+        # coaxial, and in what the one before is around
+        before = (shells or outermost)[-1:]
+        if before and before[0].inside == surface.outside:
+            shells.append(surface)
+        else:
+            outermost.append(surface)
+    if len(outermost) != 1:
+        raise OctsimError(
+            f"scene: {len(outermost)} cylinders given, but scheme fullwave solves for one; "
+            "give tracing.scheme: paths"
+        )
+    (cylinder,) = outermost
+    if getattr(cylinder, "elevation", 0.0):
+        raise OctsimError(
+            "scene.cylinders.0.elevation: given, but scheme fullwave has the cylinder level; "
+            "give tracing.scheme: paths"
+        )
+    return cylinder, shells
+
+
+def _thickness(planes: list[Plane]) -> list[float]:
+    return [upper.height - lower.height for lower, upper in pairwise(planes)]
+
+
+def _layer(region: Region, thickness: float, wavenumber: float) -> Layer:
+    index = region.material.index(wavenumber).real
+    kappa = region.attenuation_at(wavenumber) / (2 * wavenumber)
+    return Layer(complex(index, kappa) if kappa else index, thickness)

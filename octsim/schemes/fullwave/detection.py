@@ -11,6 +11,7 @@ from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 from octsim.schemes.fullwave.gauss_legendre import gauss_legendre
 from octsim.schemes.fullwave.illumination import Lit, Wavefront
 from octsim.schemes.fullwave.plane import fresnel, normal
+from octsim.schemes.fullwave.stacks import from_glass
 
 Array = NDArray[Any]
 
@@ -55,7 +56,7 @@ def plane_return(
     nodes: int,
     wavefront: Wavefront | None = None,
 ) -> Array:
-    r"""Return what the detector collects of the plane's own reflection, (K,).
+    r"""Return what the detector collects of the planes' own reflection, (K,).
 
     Through an aberration, whose odd part does nothing, of light across and along, (2, K).
 
@@ -64,7 +65,10 @@ def plane_return(
     """
     sine, _ = _radial(aperture, nodes)
     below, above = normal(scene.n_glass, sine), normal(scene.n_water, sine)
-    r_s, r_p = fresnel(below, above, scene.n_glass, scene.n_water)
+    if scene.one_plane:
+        r_s, r_p = fresnel(below, above, scene.n_glass, scene.n_water)
+    else:
+        r_s, r_p = from_glass(scene, np.square(sine) + 0j, k[:, np.newaxis])
     return returned_by(r_s, r_p, below, pupil, aperture, focus, k, nodes, wavefront)
 
 
@@ -82,7 +86,8 @@ def returned_by(
     Parameters
     ----------
     r_s, r_p, below : ndarray, shape (R,)
-        Reflection of E and of H, and k_z over k in the glass, at `pupil_nodes`.
+        Reflection of E and of H, (K, R) where it depends on k, and k_z over k in the glass, at
+        `pupil_nodes`.
     pupil, aperture, k, nodes, wavefront
         As `plane_return` has them.
     focus : float

@@ -19,11 +19,17 @@ from octsim.optics.pupil import Pupil
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 from octsim.schemes.fullwave.gauss_legendre import gauss_legendre
 from octsim.schemes.fullwave.plane import normal, reflection
+from octsim.schemes.fullwave.stacks import above_water, below_water, into_water
 
 Array = NDArray[Any]
 Wavefront = Callable[[Array, Array], Array]
 """Returns an aberration W (µm) at points of the pupil, in units of its radius: across the cylinder,
 and along it, in which it is even."""
+
+
+Both = tuple[Array, Array]
+_Sent = tuple[Array, Both, Both | None]
+"""A factor of all, and E_y and H_y of light that reaches the axis upwards, and downwards."""
 
 
 class Lit(NamedTuple):
@@ -54,6 +60,15 @@ def mirror_waves(angle: Array, waves: int) -> tuple[tuple[Array, Array], tuple[A
     turn = np.arange(waves + 1)[:, np.newaxis] * angle[..., np.newaxis, :]
     odd, even = 1j * np.sin(turn), np.cos(turn) + 0j
     return (odd, even), (even, odd)
+
+
+def downward_signs(orders: int, mirror: int) -> tuple[Array, Array]:
+    """Return what light that travels downwards has to e^{imβ} of a mirror class, (M + 1,) each.
+
+    As it is (−1)^m e^{−imβ}: of E_y and of H_y.
+    """
+    turn = np.where(np.arange(orders) % 2, -1.0, 1.0)
+    return (-turn, turn) if mirror == 0 else (turn, -turn)
 
 
 def illumination(
@@ -89,29 +104,84 @@ def illumination(
     sideways = np.broadcast_to(along[:, np.newaxis], across.shape)
     sine = np.hypot(across, sideways)
     below, above = normal(scene.n_glass, sine), normal(scene.n_water, sine)
-    r = reflection(
-        sideways + 0j, across + 0j, below, above, scene.n_glass, scene.n_water, upwards=True
-    )
     classes = mirror_waves(np.arctan2(across, above.real), waves)
     wavenumber = k[:, np.newaxis, np.newaxis]
     weight = np.stack([pupil.amplitude(sine, aperture, one) for one in k.tolist()])
     # both halves of the integral over k_x
     measure = reach * w * np.sqrt(scene.n_glass / below)
-    travel = weight * measure * np.exp(1j * wavenumber * (above * scene.height - below * focus))
+    size = weight * measure
     of_class = _over_classes(scene, across, sideways, aperture, wavenumber, wavefront)
+    lit_by = _through_plane if scene.one_plane else _through_stacks
     found = []
+    for polarisation, (travel, upwards, downwards) in enumerate(
+        lit_by(scene, focus, across, sideways, wavenumber)
+    ):
+        reaching = size * travel
+        for turned, part_of in enumerate(of_class):
+            mirror = polarisation ^ turned
+            part = reaching * part_of
+            # a matrix for each k_y, over all wavenumbers
+            sides = [
+                _over_across(part * field, waves_of)
+                for field, waves_of in zip(upwards, classes[mirror], strict=True)
+            ]
+            if downwards:
+                for at, waves_of in enumerate(classes[mirror]):
+                    back = _over_across(part * downwards[at], waves_of)
+                    sides[at] += downward_signs(waves + 1, mirror)[at] * back
+            found.append(Lit(polarisation, mirror, *sides))
+    return found
+
+
+def _through_plane(
+    scene: CylinderOnPlane, focus: float, across: Array, sideways: Array, wavenumber: Array
+) -> list[_Sent]:
+    """Return the light of both polarisations through one plane."""
+    sine = np.hypot(across, sideways)
+    below, above = normal(scene.n_glass, sine), normal(scene.n_water, sine)
+    r = reflection(
+        sideways + 0j, across + 0j, below, above, scene.n_glass, scene.n_water, upwards=True
+    )
+    travel = np.exp(1j * wavenumber * (above * scene.height - below * focus))
+    found: list[_Sent] = []
     for polarisation in (0, 1):
         e, h = _components(polarisation, sideways, across, sine, below, scene.n_glass)
         through = e + r.ee * e + r.eh * h, h + r.he * e + r.hh * h
-        for turned, part_of in enumerate(of_class):
-            mirror = polarisation ^ turned
-            part = travel * part_of
-            # a matrix for each k_y, over all wavenumbers
-            sides = (
-                _over_across(part * field, waves_of)
-                for field, waves_of in zip(through, classes[mirror], strict=True)
+        found.append((travel, through, None))
+    return found
+
+
+def _through_stacks(
+    scene: CylinderOnPlane, focus: float, across: Array, sideways: Array, wavenumber: Array
+) -> list[_Sent]:
+    """Return the light of both polarisations through planes below, and from planes above."""
+    sine = np.hypot(across, sideways)
+    squared = np.square(sine) + 0j
+    below, above = normal(scene.n_glass, sine), normal(scene.n_water, sine)
+    passed = into_water(scene, squared, wavenumber)
+    travel = np.exp(1j * wavenumber * (above * scene.height - below * focus))
+    beyond = None
+    if scene.above:
+        round_trip = np.exp(2j * wavenumber * above * scene.room)
+        beyond = above_water(scene, squared, wavenumber)
+        passed_s, passed_p = (
+            t / (1 - r_b * r_a * round_trip)
+            for t, r_b, r_a in zip(
+                passed, below_water(scene, squared, wavenumber), beyond, strict=True
             )
-            found.append(Lit(polarisation, mirror, *sides))
+        )
+        passed = passed_s, passed_p
+        back = np.exp(2j * wavenumber * above * (scene.room - scene.height))
+    c, s, cosine = across / sine, sideways / sine, above / scene.n_water
+    found: list[_Sent] = []
+    for radial, azimuthal in ((c, -s), (s, c)):
+        # E of s light, and H of p light over n₂
+        e_s, e_p = passed[0] * azimuthal, passed[1] * radial * (scene.n_glass / scene.n_water)
+        downwards = None
+        if beyond:
+            returned = e_s * beyond[0] * back, e_p * beyond[1] * back
+            downwards = _turned(*returned, c, s, -cosine, scene.n_water)
+        found.append((travel, _turned(e_s, e_p, c, s, cosine, scene.n_water), downwards))
     return found
 
 
@@ -150,5 +220,11 @@ def _components(
     """Return E_y and Z₀ H_y of the pupil's light in glass."""
     c, s = across / sine, along / sine
     radial, azimuthal = (c, -s) if polarisation == 0 else (s, c)
-    cosine = below / n_glass
-    return azimuthal * c + radial * cosine * s, n_glass * (radial * c - azimuthal * cosine * s)
+    return _turned(azimuthal, radial, c, s, below / n_glass, n_glass)
+
+
+def _turned(s_light: Array, p_light: Array, c: Array, s: Array, cosine: Array, n: float) -> Both:
+    """Return E_y and Z₀ H_y of E of s and p light that travels upwards, or with −cosine down."""
+    e: Array = s_light * c + p_light * cosine * s
+    h: Array = n * (p_light * c - s_light * cosine * s)
+    return e, h

@@ -8,12 +8,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.schemes.fullwave.coupling import Coupling, contour, coupling
-from octsim.schemes.fullwave.cylinder import Scattering, scattering
+from octsim.schemes.fullwave.coupling import contour
+from octsim.schemes.fullwave.cylinder import Scattering
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 from octsim.schemes.fullwave.gauss_legendre import gauss_legendre
 from octsim.schemes.fullwave.illumination import mirror_waves
 from octsim.schemes.fullwave.orders import Orders, waves_along
+from octsim.schemes.fullwave.shells import scattering_of
+from octsim.schemes.fullwave.slab import Planes, planes_of
 
 Array = NDArray[Any]
 _KEPT = 6
@@ -28,7 +30,7 @@ class Operator(NamedTuple):
     along_weight: NDArray[np.float64]
     """Of the integral over all of the pupil's k_y / k, both signs."""
     cylinder: Scattering
-    plane: Coupling
+    plane: Planes
     mirrors: tuple[tuple[Array, Array], ...]
     """e^{imβ} at the contour's nodes, of each mirror class, of E_y and H_y."""
 
@@ -44,11 +46,16 @@ def operator(
     # it reaches farthest for light straight across, or for that of the rim
     both = along[[0, -1]]
     heights = np.sqrt(scene.n_water**2 - both**2) * scene.height * float(k.min())
-    path = contour(orders.contour, waves_along(scene, both, k[:1], orders.waves)[0], heights)
+    farthest = waves_along(scene, both, k[:1], orders.waves)[0]
+    if scene.above:
+        # or what is closer to the plane above
+        upwards = heights * (scene.room - scene.height) / scene.height
+        farthest, heights = np.tile(farthest, 2), np.concatenate([heights, upwards])
+    path = contour(orders.contour, farthest, heights)
     return Operator(
         k, along, weight,
-        scattering(scene, along, k, orders.waves),
-        coupling(scene, path, along, k),
+        scattering_of(scene, along, k, orders.waves),
+        planes_of(scene, path, along, k),
         mirror_waves(path.angle, orders.waves),
     )  # fmt: skip
 

@@ -52,7 +52,7 @@ def first_orders(
 ) -> Orders:
     """Return orders that are usually enough."""
     digits = -math.log10(accuracy)
-    size = largest_k * scene.radius * max(scene.n_neuron, scene.n_water)
+    size = largest_k * scene.radius * scene.largest_index
     spread = abs(_defocus(scene, aperture, focus)) * largest_k
     sideways = largest_k * abs(scene.offset) * aperture
     return Orders(
@@ -69,7 +69,7 @@ def waves_along(
 
     As many beyond k a κ, in cube roots of it, as M is beyond the largest.
     """
-    index = max(scene.n_water, scene.n_neuron)
+    index = scene.largest_index
     size = scene.radius * k[:, np.newaxis] * np.sqrt(index**2 - along**2)
     largest = size.max()
     found: NDArray[np.float64] = size + (waves - largest) * np.cbrt(size / largest)
@@ -102,7 +102,7 @@ def first_nodes(
 
 def most_nodes(scene: CylinderOnPlane, band: tuple[float, float], accuracy: float) -> int:
     """Return the wavenumbers in a band that are not exceeded, whatever the focus."""
-    if scene.n_neuron > _RESONANT * scene.n_water:
+    if scene.largest_index > _RESONANT * scene.n_water:
         return MOST_WAVENUMBERS
     return min(MOST_WAVENUMBERS, 2 * _nodes(scene.far_side, band, accuracy) + 24)
 

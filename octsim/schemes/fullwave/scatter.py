@@ -1,13 +1,13 @@
-r"""What the cylinder over the plane scatters: :math:`b = T (a + R b)` for each k and k_y."""
+r"""What the cylinder among planes scatters: :math:`b = T (a + R b)` for each k and k_y."""
 
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.schemes.fullwave.coupling import Coupling, both_signs, reflected
 from octsim.schemes.fullwave.illumination import Lit
 from octsim.schemes.fullwave.operators import Operator
+from octsim.schemes.fullwave.slab import at, returned, returned_matrices
 
 Array = NDArray[Any]
 Waves = tuple[Array, Array]
@@ -42,10 +42,10 @@ def incoming(operator: Operator, lit: Lit, tolerance: float) -> Incoming:
     waves_of, whole = operator.mirrors[lit.mirror], operator.cylinder.whole
     e, h = lit.e, lit.h
     out = scattered(whole, e, h)
-    before, once, done = np.inf, 4.0 * e.size * len(operator.plane.ee[0, 0]), 0.0
+    before, once, done = np.inf, 4.0 * e.size * waves_of[0].shape[1], 0.0
     for _ in range(_ITERATIONS):
         done += once
-        back_e, back_h = reflected(operator.plane, *out, *waves_of)
+        back_e, back_h = returned(operator.plane, *out, waves_of, lit.mirror)
         e, h = lit.e + back_e, lit.h + back_h
         # outgoing waves tell: regular ones of high orders are large, and scatter nothing
         following = scattered(whole, e, h)
@@ -75,15 +75,10 @@ def scattered(matrix: Array, e: Array, h: Array) -> Waves:
 def _direct(operator: Operator, lit: Lit, one: tuple[int, NDArray[np.bool_]]) -> Waves:
     """Solve (1 − T R) b = T a by elimination, for one k and some k_y, and return a + R b there."""
     waves_of, whole = operator.mirrors[lit.mirror], operator.cylinder.whole[:, :, *one]
-    plane = Coupling(*(part[one] for part in operator.plane))
+    plane = at(operator.plane, one)
     e, h = lit.e[one], lit.h[one]
     orders = e.shape[-1]
-    signs = both_signs(orders)[:, np.newaxis]
-    parts = ((plane.ee, plane.eh), (plane.he, plane.hh))
-    back = [
-        [(waves_of[to] * parts[to][of][:, np.newaxis]) @ (signs * waves_of[of]).T for of in (0, 1)]
-        for to in (0, 1)
-    ]
+    back = returned_matrices(plane, waves_of, lit.mirror)
     # T falls with the order as fast as R grows: unknowns are b over the root of T
     scale = np.sqrt(np.abs(whole).max(axis=(0, 1)))
     inverse = np.divide(1.0, scale, out=np.zeros_like(scale), where=scale > 0)
@@ -101,5 +96,5 @@ def _direct(operator: Operator, lit: Lit, one: tuple[int, NDArray[np.bool_]]) ->
     right = np.concatenate([part * inverse for part in scattered(whole, e, h)], axis=-1)
     found = np.linalg.solve(np.eye(2 * orders) - both, right[..., np.newaxis])[..., 0]
     out_e, out_h = found[:, :orders] * scale, found[:, orders:] * scale
-    back_e, back_h = reflected(plane, out_e, out_h, *waves_of)
+    back_e, back_h = returned(plane, out_e, out_h, waves_of, lit.mirror)
     return e + back_e, h + back_h

@@ -115,7 +115,7 @@ def _field_in_place(
         scene, pupil, aperture, focus, operator.along, k, orders.waves, orders.across,
         point.wavefront,
     )  # fmt: skip
-    radial = radial_nodes(aperture, scene.n_glass, focus, float(k.max()))
+    radial = radial_nodes(aperture, scene.n_glass, abs(focus) + scene.depth, float(k.max()))
     whole = norm(pupil, aperture, k, radial) * 4 * np.pi * scene.n_glass
     cylinder = np.zeros((len(operator.cylinder), 2, k.size), np.complex128)
     multiplications = 0.0
