@@ -8,7 +8,7 @@ from markdown import table
 
 from octsim.config.models import Config
 from octsim.studies.calibration.expansion import LARGEST, expansion, sensitivity_at
-from octsim.studies.calibration.parameters import PARAMETERS
+from octsim.studies.calibration.parameters import parameter_named
 from octsim.studies.calibration.round_trips import REST, TRIALS
 from octsim.studies.calibration.scheme import ACCURACY
 from octsim.studies.calibration.study import RAYS
@@ -73,7 +73,7 @@ def budget(found: xr.Dataset, config: Config) -> str:
     ends = (SHOWN[0], EXAMPLE[1], SHOWN[-1])
     rows = []
     for name in found["parameter"].values.tolist():
-        tolerance, unit = getattr(config.calibration.tolerances, name), PARAMETERS[name].unit
+        tolerance, unit = config.calibration.tolerances.of[name], parameter_named(name).unit
         sensitivity = [
             float(found[f"{name}_sensitivity"].sel(diameter=d, method="nearest")) for d in ends
         ]
