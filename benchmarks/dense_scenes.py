@@ -91,9 +91,7 @@ def layer_matrices(
     normals = [np.sqrt(n**2 - squared + 0j) for n in indices]
     found = []
     for kind in (0, 1):
-        admittance = [
-            z if kind == 0 else z / n**2 for z, n in zip(normals, indices, strict=True)
-        ]
+        admittance = [z if kind == 0 else z / n**2 for z, n in zip(normals, indices, strict=True)]
         # tangential field and its partner, from the far side back
         field, partner, scale = np.ones_like(normals[-1]), admittance[-1], 1.0
         inner = zip(normals[1:-1], admittance[1:-1], thickness, strict=True)
@@ -172,7 +170,9 @@ def between_matrices(scene: Layered, k: float, along: float, waves: int, nodes: 
                 np.linalg.inv(np.moveaxis(basis_of, (0, 1), (-2, -1))), (-2, -1), (0, 1)
             )
             turned = np.einsum("aqb,qb,qcb->acb", basis_to, to[:, i, j], inverse)
-            found += np.einsum("mb,acb,nb->amcn", waves_to * weight, turned, waves_of)
+            for a in (0, 1):
+                for b in (0, 1):
+                    found[a, :, b] += (waves_to * (weight * turned[a, b])) @ waves_of.T
     return found
 
 

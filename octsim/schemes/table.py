@@ -186,7 +186,8 @@ FULL_WAVE = Scheme(
     cost=of_waves,
     light="waves",
     controls_error=True,
-    honours=_OF_BOTH | {Ability.OFF_AXIS, Ability.AZIMUTH},
+    honours=_OF_BOTH
+    | {Ability.OFF_AXIS, Ability.AZIMUTH, Ability.SHELLS, Ability.LAYERS},
     mode_field_diameter=5.0,
     instrument=(
         "scene", "objective.numerical_aperture", "objective.magnification", "objective.pupil",

@@ -39,10 +39,7 @@ def operator(
     scene: CylinderOnPlane, aperture: float, k: NDArray[np.float64], orders: Orders
 ) -> Operator:
     """Return the operator of a scene, for all k_y / k up to an aperture."""
-    x, w = gauss_legendre(orders.along)
-    # closer where the phase turns fastest, at the rim: a tenth of the error of evenly mapped nodes
-    u = (x + 1) / 2
-    along, weight = aperture * (1.5 - 0.5 * u) * u, aperture * w * (1.5 - u)
+    along, weight = along_nodes(aperture, orders.along)
     # it reaches farthest for light straight across, or for that of the rim
     both = along[[0, -1]]
     heights = np.sqrt(scene.n_water**2 - both**2) * scene.height * float(k.min())
@@ -58,6 +55,14 @@ def operator(
         planes_of(scene, path, along, k),
         mirror_waves(path.angle, orders.waves),
     )  # fmt: skip
+
+
+def along_nodes(aperture: float, nodes: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return k_y / k > 0 and the weights of the integral over both signs."""
+    x, w = gauss_legendre(nodes)
+    # closer where the phase turns fastest, at the rim: a tenth of the error of evenly mapped nodes
+    u = (x + 1) / 2
+    return aperture * (1.5 - 0.5 * u) * u, aperture * w * (1.5 - u)
 
 
 class Operators:

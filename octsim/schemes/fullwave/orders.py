@@ -55,10 +55,13 @@ def first_orders(
     size = largest_k * scene.radius * scene.largest_index
     spread = abs(_defocus(scene, aperture, focus)) * largest_k
     sideways = largest_k * abs(scene.offset) * aperture
+    # light from above is out of focus, most of all that of the rim
+    from_above = max(largest_k * abs(_defocus_from_above(scene, aperture, focus)) - spread, 0.0)
     return Orders(
         math.ceil(partial_waves(size, digits)),
-        math.ceil(3 + digits + 0.25 * (size + spread) + 0.5 * sideways), math.ceil(14 + size),
-        math.ceil(2 + 0.75 * digits + 0.85 * size + 0.5 * spread),
+        math.ceil(3 + digits + 0.25 * (size + spread) + 0.5 * sideways + from_above),
+        math.ceil(14 + size),
+        math.ceil(2 + 0.75 * digits + 0.85 * size + 0.5 * spread + 0.65 * from_above),
     )  # fmt: skip
 
 
@@ -84,10 +87,25 @@ def radial_nodes(point_aperture: float, n_glass: float, focus: float, largest_k:
 
 def _defocus(scene: CylinderOnPlane, aperture: float, focus: float) -> float:
     """Return by how much the optical path to the axis differs between the rim and the axis, µm."""
-    glass, water = scene.n_glass, scene.n_water
-    in_glass = glass - math.sqrt(glass**2 - aperture**2)
-    in_water = water - math.sqrt(max(water**2 - aperture**2, 0.0))
-    return scene.height * in_water - focus * in_glass
+    in_glass = _behind(scene.n_glass, aperture)
+    return (
+        scene.height * _behind(scene.n_water, aperture) - focus * in_glass
+        + sum(film.thickness * _behind(film.n.real, aperture) for film in scene.films)
+    )  # fmt: skip
+
+
+def _defocus_from_above(scene: CylinderOnPlane, aperture: float, focus: float) -> float:
+    """Return the same of light that comes to the axis from the highest plane, µm; else 0."""
+    if not scene.above:
+        return 0.0
+    further = 2 * (scene.room - scene.height) * _behind(scene.n_water, aperture)
+    layers = (layer.thickness * _behind(layer.n.real, aperture) for layer in scene.above[:-1])
+    return _defocus(scene, aperture, focus) + further + 2 * sum(layers)
+
+
+def _behind(index: float, aperture: float) -> float:
+    """Return by how much a layer's optical path is less for the rim, over its thickness."""
+    return index - math.sqrt(max(index**2 - aperture**2, 0.0))
 
 
 def first_nodes(
@@ -97,7 +115,11 @@ def first_nodes(
     """Return the wavenumbers in a band that are usually enough."""
     # the plane's light of the pupil's rim is apart from that of the axis by the focus's distance
     rim = 2 * focus * (scene.n_glass - math.sqrt(scene.n_glass**2 - aperture**2))
-    return _nodes(max(scene.far_side, abs(rim - scene.far_side)), band, accuracy)
+    reach = max(scene.far_side, abs(rim - scene.far_side))
+    if scene.above:
+        # what goes to and fro below them is the farther the more digits are asked for
+        reach *= 1 - 0.25 * math.log10(accuracy)
+    return _nodes(reach, band, accuracy) + 2 * bool(scene.shells)
 
 
 def most_nodes(scene: CylinderOnPlane, band: tuple[float, float], accuracy: float) -> int:

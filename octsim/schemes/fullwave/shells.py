@@ -14,6 +14,7 @@ continuous,
     \begin{pmatrix} 0 & 1 \\ -\varepsilon & 0 \end{pmatrix}.
 """
 
+from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,6 +27,8 @@ from octsim.schemes.fullwave.orders import waves_along
 from octsim.schemes.fullwave.two_by_two import matrix, solved, times
 
 Array = NDArray[Any]
+_AT_ONCE = 2000
+"""Matrices."""
 
 
 class _Surface(NamedTuple):
@@ -48,15 +51,25 @@ def scattering_of(
     """
     if not scene.shells:
         return scattering(scene, along, k, waves)
-    kept = np.arange(waves + 1) <= waves_along(scene, along, k, waves)[..., np.newaxis]
-    # functions of high orders leave what a number can be, deep within
+    # a part of the wavenumbers at a time, so that what is worked with stays in fast memory
+    step = max(1, _AT_ONCE // (along.size * (waves + 1)))
     with np.errstate(over="ignore", invalid="ignore", divide="ignore", under="ignore"):
         surfaces = _surfaces(scene, along, k, waves)
-        p, q = _condition(surfaces)
-        outer = surfaces[0].around
-        whole = -solved(_left(p, q, outer.outgoing), _left(p, q, outer.regular))
-        debye = _debye(surfaces)
-    return Scattering(np.where(kept, whole, 0), *(_finite(one) * kept for one in debye))
+        parts = [
+            _matrices([_part(one, slice(begin, begin + step)) for one in surfaces])
+            for begin in range(0, k.size, step)
+        ]
+    kept = np.arange(waves + 1) <= waves_along(scene, along, k, waves)[..., np.newaxis]
+    # functions of high orders leave what a number can be, deep within
+    found = (np.concatenate(each, axis=2) for each in zip(*parts, strict=True))
+    return Scattering(*(np.where(kept & np.isfinite(one), one, 0) for one in found))
+
+
+def _matrices(surfaces: list[_Surface]) -> Scattering:
+    p, q = _condition(surfaces)
+    outer = surfaces[0].around
+    whole = -solved(_left(p, q, outer.outgoing), _left(p, q, outer.regular))
+    return Scattering(whole, *_debye(surfaces))
 
 
 def _surfaces(
@@ -65,15 +78,39 @@ def _surfaces(
     """Return the surfaces, outside in."""
     core = complex(scene.n_neuron, scene.kappa) if scene.kappa else scene.n_neuron
     indices = (scene.n_water, *(shell.n for shell in scene.shells), core)
-    radius, found = scene.radius, []
-    for number in range(len(indices) - 1):
-        if number:
-            radius -= scene.shells[number - 1].thickness
-        size = radius * k[:, np.newaxis]
-        out, into = (side_of(n, along, k, waves, radius) for n in indices[number : number + 2])
-        around, within = (kinds(size * side.kappa, waves) for side in (out, into))
-        found.append(_Surface(out, into, around, within))
-    return found
+    inwards = accumulate((-shell.thickness for shell in scene.shells), initial=scene.radius)
+    sides, sizes = [], []
+    for radius, *media in zip(inwards, indices[:-1], indices[1:], strict=True):
+        for n in media:
+            sides.append(side_of(n, along, k, waves, radius))
+            sizes.append(radius * k[:, np.newaxis] * sides[-1].kappa)
+    both = zip(sides, _kinds(sizes, waves), strict=True)
+    return [
+        _Surface(outside, inside, around, within)
+        for (outside, around), (inside, within) in zip(both, both, strict=True)
+    ]
+
+
+def _kinds(sizes: list[Array], waves: int) -> list[Kinds]:
+    """Return the functions of several arguments; of all that are real at once, for speed."""
+    real = [number for number, size in enumerate(sizes) if np.isrealobj(size)]
+    found = {n: kinds(sizes[n], waves) for n in range(len(sizes)) if n not in real}
+    if real:
+        every = kinds(np.stack([sizes[number] for number in real]), waves)
+        for place, number in enumerate(real):
+            found[number] = Kinds(*(_each(kind, place) for kind in every))
+    return [found[number] for number in range(len(sizes))]
+
+
+def _each(one: Cylindrical, part: Any) -> Cylindrical:
+    return Cylindrical(one.value[part], one.slope[part])
+
+
+def _part(surface: _Surface, part: slice) -> _Surface:
+    """Return a surface at some of the wavenumbers."""
+    outside, inside = (side._replace(skew=side.skew[part]) for side in surface[:2])
+    around, within = (Kinds(*(_each(kind, part) for kind in kinds)) for kinds in surface[2:])
+    return _Surface(outside, inside, around, within)
 
 
 def _condition(surfaces: list[_Surface]) -> tuple[Array, Array]:
@@ -195,7 +232,3 @@ def _interface(at: _Surface) -> tuple[Array, Array, Array, Array]:
     outside, inside = solved(in_3 - out_2, in_2 - in_3), solved(out_2 - in_3, out_3 - out_2)
     one = np.eye(2).reshape(2, 2, 1, 1, 1)
     return outside, inside, one + outside, one + inside
-
-
-def _finite(of: Array) -> Array:
-    return np.where(np.isfinite(of), of, 0)

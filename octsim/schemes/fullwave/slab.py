@@ -28,6 +28,7 @@ from octsim.schemes.fullwave.stacks import above_water, below_water, conical
 Array = NDArray[Any]
 Both = tuple[Array, Array]
 """Of E_y and of H_y."""
+_EVEN_ODD = slice(0, None, 2), slice(1, None, 2)
 
 
 class Slab(NamedTuple):
@@ -81,12 +82,12 @@ def planes_of(
 
 
 def returned(planes: Planes, b_e: Array, b_h: Array, waves_of: Both, mirror: int) -> Both:
-    """Return the regular waves (K, Y, M + 1) that planes make of outgoing ones.
+    """Return the regular waves that planes make of outgoing ones.
 
     Parameters
     ----------
     planes : Coupling or Slab
-    b_e, b_h : ndarray, shape (K, Y, M + 1)
+    b_e, b_h : ndarray, shape (K, Y, M + 1) or (Y, M + 1)
         Of E_y and H_y, m ≥ 0, of one mirror class.
     waves_of : (ndarray, ndarray)
         e^{imβ}, (M + 1, B), the part of it that has the class's parity, of E_y and H_y.
@@ -96,22 +97,33 @@ def returned(planes: Planes, b_e: Array, b_h: Array, waves_of: Both, mirror: int
     if isinstance(planes, Coupling):
         return reflected(planes, b_e, b_h, *waves_of)
     signs = both_signs(b_e.shape[-1])
-    parts = []
-    for b, waves, parity in zip((b_e, b_h), waves_of, parities(mirror), strict=True):
-        # even orders go both ways alike, and odd ones with a sign
-        even, odd = ((signs * b)[..., at::2] @ waves[at::2] for at in (0, 1))
-        parts.append((even + odd, parity * (even - odd)))
-    (d_e, u_e), (d_h, u_h) = parts
-    up = (_sent(planes.up_of_down, d_e, d_h), _sent(planes.up_of_up, u_e, u_h))
-    down = (_sent(planes.down_of_up, u_e, u_h), _sent(planes.down_of_down, d_e, d_h))
-    found = []
-    for of, (waves, parity) in enumerate(zip(waves_of, parities(mirror), strict=True)):
-        upwards, downwards = up[0][of] + up[1][of], parity * (down[0][of] + down[1][of])
-        a = np.empty(b_e.shape, np.complex128)
-        for at, sign in ((0, 1), (1, -1)):
-            a[..., at::2] = (upwards + sign * downwards) @ waves[at::2].T
-        found.append(a)
-    return found[0], found[1]
+    if b_e.ndim == 2:
+        return _returned_once(planes, signs * b_e, signs * b_h, waves_of, mirror)
+    found = np.empty_like(b_e), np.empty_like(b_h)
+    # one wavenumber at a time, which fast memory holds
+    for number in range(len(b_e)):
+        one = at(planes, number), signs * b_e[number], signs * b_h[number], waves_of, mirror
+        found[0][number], found[1][number] = _returned_once(*one)
+    return found
+
+
+def _returned_once(slab: Slab, b_e: Array, b_h: Array, waves_of: Both, mirror: int) -> Both:
+    """Return the regular waves of one wavenumber, (Y, M + 1), of both signs' outgoing ones."""
+    even = parities(mirror)
+    sent = []
+    for b, waves in zip((b_e, b_h), waves_of, strict=True):
+        # of even orders, which go both ways alike, and of odd ones, with a sign
+        of_even, of_odd = (b[:, part] @ waves[part] for part in _EVEN_ODD)
+        sent.append((of_even + of_odd, of_even - of_odd))
+    (d_e, u_e), (d_h, u_h) = sent
+    u_e, u_h = even[0] * u_e, even[1] * u_h
+    up = _sum(_sent(slab.up_of_down, d_e, d_h), _sent(slab.up_of_up, u_e, u_h))
+    down = _sum(_sent(slab.down_of_up, u_e, u_h), _sent(slab.down_of_down, d_e, d_h))
+    found = np.empty_like(b_e), np.empty_like(b_h)
+    for a, upwards, downwards, waves, parity in zip(found, up, down, waves_of, even, strict=True):
+        for part, sign in zip(_EVEN_ODD, (parity, -parity), strict=True):
+            a[:, part] = (upwards + sign * downwards) @ waves[part].T
+    return found
 
 
 def parities(mirror: int) -> tuple[int, int]:
@@ -158,6 +170,10 @@ def returned_matrices(planes: Planes, waves_of: Both, mirror: int) -> list[list[
 
 def _sent(by: Coupling, e: Array, h: Array) -> Both:
     return by.ee * e + by.eh * h, by.he * e + by.hh * h
+
+
+def _sum(one: Both, other: Both) -> Both:
+    return one[0] + other[0], one[1] + other[1]
 
 
 def _between(by: Coupling, to: Any, of: Any) -> list[list[Array]]:

@@ -25,6 +25,7 @@ from octsim.schemes.fullwave.orders import (
 )
 from octsim.schemes.fullwave.scatter import incoming, scattered
 from octsim.schemes.fullwave.series import coefficients, nodes
+from octsim.schemes.fullwave.several import Lights, several
 from octsim.schemes.light import TERMS, AccuracyStatus, Waves
 
 Array = NDArray[Any]
@@ -44,6 +45,8 @@ class Place(NamedTuple):
 
     scene: CylinderOnPlane
     focus: float
+    neighbours: tuple[CylinderOnPlane, ...] = ()
+    """Other cylinders, among the same planes."""
 
 
 class Point(NamedTuple):
@@ -62,6 +65,8 @@ class Point(NamedTuple):
     """Aberration of the pupil, in the frame of the cylinder."""
     intervals: float = 0.0
     """How often the least distance of a table's rows is in the band: an index may turn at each."""
+    neighbours: tuple[CylinderOnPlane, ...] = ()
+    """Other cylinders, among the same planes, at the middle of the band."""
 
 
 class Solved(NamedTuple):
@@ -95,8 +100,7 @@ def field_at(
         return _field_in_place(point, k, orders, tolerance, operators)
     each = []
     for at in k:
-        scene, focus = point.place_at(float(at))
-        here = point._replace(scene=scene, focus=focus)
+        here = point._replace(**point.place_at(float(at))._asdict())
         each.append(_field_in_place(here, np.array([at]), orders, tolerance, operators))
     return Solved(
         np.concatenate([one.values for one in each], axis=-1),
@@ -110,6 +114,8 @@ def _field_in_place(
 ) -> Solved:
     """Return the field of a scene and a focus that are the same at all of some wavenumbers."""
     scene, pupil, aperture, focus = point[:4]
+    if point.neighbours:
+        return _field_of_several(point, k, orders, tolerance)
     operator = operators.of(scene, aperture, k, orders)
     lights = illumination(
         scene, pupil, aperture, focus, operator.along, k, orders.waves, orders.across,
@@ -130,6 +136,22 @@ def _field_in_place(
     both = np.broadcast_to(plane, (2, k.size))
     terms = np.stack((both, cylinder[1], cylinder[2]))
     return Solved(plane + cylinder[0], terms, multiplications)
+
+
+def _field_of_several(
+    point: Point, k: NDArray[np.float64], orders: Orders, tolerance: float
+) -> Solved:
+    """Return the field of several cylinders; the first one's planes are all others'."""
+    scene, pupil, aperture, focus = point[:4]
+    radial = radial_nodes(aperture, scene.n_glass, abs(focus) + scene.depth, float(k.max()))
+    whole = norm(pupil, aperture, k, radial) * 4 * np.pi * scene.n_glass
+    lights = Lights(pupil, aperture, focus, point.wavefront)
+    found = several((scene, *point.neighbours), lights, k, orders, tolerance)
+    cylinders = found.terms / whole
+    plane = plane_return(scene, pupil, aperture, focus, k, radial, point.wavefront)
+    both = np.broadcast_to(plane, (2, k.size))
+    terms = np.stack((both, cylinders[1], cylinders[2]))
+    return Solved(plane + cylinders[0], terms, found.multiplications)
 
 
 def solve(point: Point, band: tuple[float, float], accuracy: float, operators: Operators) -> Waves:
