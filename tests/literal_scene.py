@@ -123,11 +123,13 @@ def distances(scene: Scene, rays: Rays) -> tuple[Array, Array, Array]:
     found: list[tuple[Array, int, int]] = []
     v_z = rays.direction[:, 2]
     bottom = scene.bottom(layer)
+    # a level tube touches planes at most, and light in it meets its wall there
+    planes = depth == 0 or scene.tubes[tube].elevation != 0
     with np.errstate(divide="ignore", invalid="ignore"):
-        if layer > 0 and on != LOWER:
+        if planes and layer > 0 and on != LOWER:
             down = (bottom - rays.position[:, 2]) / v_z
             found.append((np.where(v_z < 0, np.maximum(down, 0), np.inf), LOWER, -1))
-        if layer < len(scene.layers) - 1 and on != UPPER:
+        if planes and layer < len(scene.layers) - 1 and on != UPPER:
             top = bottom + scene.layers[layer][1] if layer else 0.0
             up = (top - rays.position[:, 2]) / v_z
             found.append((np.where(v_z > 0, np.maximum(up, 0), np.inf), UPPER, -1))
@@ -161,6 +163,8 @@ def deep(scene: Scene, points: Array) -> tuple[Array, Array]:
     """Tube, and number of its walls, around points of the cylinders' layer."""
     tubes, depths = np.full(len(points), -1), np.zeros(len(points), int)
     for number, one in enumerate(scene.tubes):
+        if not one.elevation:
+            continue  # it touches its planes at most
         way = points - scene.centre(number)
         apart = np.linalg.norm(np.cross(way, one.axis), axis=1)
         walls = np.sum(apart[:, np.newaxis] < np.array(one.radii), axis=1)
@@ -246,6 +250,7 @@ class Tracer:
         one, two = self.medium(rays), self.medium(other)
         if one == two:
             return [other]
+        rays, other = (one[one.met < self.setup.max_intersections] for one in (rays, other))
         setup, v = self.setup, rays.direction
         normal = self.normal(rays, what, which)
         normal = np.where(np.sum(v * normal, axis=1, keepdims=True) > 0, -normal, normal)
@@ -290,7 +295,7 @@ class Tracer:
                 self.setup, self.colour,
                 Beam(back.position, back.direction, back.carried, back.path, back.layer, back.met > 0),
             )  # fmt: skip
-            rays = rays[~home & (rays.met < self.setup.max_intersections)]
+            rays = rays[~home]
 
 
 def intensity(scene: Scene, setup: Setup, wavenumbers: Array) -> Array:

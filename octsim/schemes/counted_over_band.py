@@ -28,6 +28,8 @@ from octsim.schemes.returned_rays import (
 from octsim.schemes.track_sums import Fields, Floats, Tracks, fields_of, summed, weights_of
 
 _NODES, _NODES_OF_PART = 9, 7
+_FEW = 32
+"""Wavenumbers of which each is traced, as that does not take long."""
 _ROWS = 3
 """Rows of a table in a part of the band, at most."""
 _CLOSE = 2e-10
@@ -54,7 +56,9 @@ def sampled_spiral(
     lights, every = [], []
     for share in spiral.shares(_NODES if optics.way_varies else 1):
         found = spiral.at(middle, share)
-        if optics.way_varies:
+        if optics.way_varies and k.size <= _FEW:
+            fields = _one_by_one(spiral, k, share, frozenset())
+        elif optics.way_varies:
             fields = _over_band(spiral, k, share, frozenset(), _NODES)
         else:
             tracks = Tracks(found.ray, found.path, found.numbers[:, np.newaxis])
