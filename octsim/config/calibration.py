@@ -13,6 +13,7 @@ from octsim.config.fields import (
     Section,
     TableRange,
     Tolerance,
+    Wavelength,
     absent,
     as_tuple,
     key,
@@ -159,6 +160,27 @@ def _none(value: object) -> object:
     return "none" if value is None else value
 
 
+def _rising(value: tuple[float, float]) -> tuple[float, float]:
+    if not value[0] < value[1]:
+        raise ValueError("the first wavelength should be below the second")
+    return value
+
+
+Band = Annotated[
+    tuple[Wavelength, Wavelength], BeforeValidator(as_tuple), AfterValidator(_rising)
+]
+"""A band of wavelengths in vacuum, from the shortest to the longest."""
+DIAMETER = "diameter"
+Fitted = Annotated[str, Field(pattern=r"^(diameter|gap|index|thickness|thickness_[2-9])$")]
+"""A quantity of the neuron that may change: `octsim.studies.responses.quantities`."""
+
+
+def _with_diameter(value: tuple[str, ...]) -> tuple[str, ...]:
+    if DIAMETER not in value or len(set(value)) < len(value):
+        raise ValueError("it should have diameter, and whatever else once")
+    return value
+
+
 class ExpansionConfig(Section):
     """A measured series of phases, for `snakemake expansion`."""
 
@@ -182,6 +204,24 @@ class ExpansionConfig(Section):
         "what is subtracted: the mean at rest, the line through the samples at rest, or that "
         "through more of them, {reference: [[first, last], ...]}, counted from 1",
     )
+
+    fit: Annotated[
+        tuple[Fitted, ...], BeforeValidator(as_tuple), AfterValidator(_with_diameter)
+    ] = key(
+        [DIAMETER],
+        "what changes: diameter, and maybe gap, index (of the neuron) and thickness (of its shell; "
+        "thickness_2 of the second one); more than the diameter needs a phase in several bands",
+    )
+    bands: Annotated[tuple[Band, ...], BeforeValidator(as_tuple)] = key(
+        [],
+        "[shortest, longest] wavelength of each band that the series has a phase of, as phase_1, "
+        "phase_2, ...; without any it has one phase, of the spectrum's band",
+    )
+
+    @property
+    def several(self) -> bool:
+        """Whether it is by responses: of phases in bands, or of more than the diameter."""
+        return bool(self.bands) or self.fit != (DIAMETER,)
 
     @property
     def references(self) -> tuple[tuple[int, int], ...]:

@@ -153,6 +153,8 @@ def explain(error: ErrorDetails) -> str:
             "it should be 'none', 'linear' or {reference: [[first, last], ...]}, the first and the "
             "last sample of each time at rest, counted from 1"
         )
+    elif path.startswith("expansion.fit.") and error["type"] == "string_pattern_mismatch":
+        message = "it should be diameter, gap, index, thickness or, of more shells, thickness_2 to 9"
     elif path in _FORMS and error["type"] == "model_type":
         message = _FORMS[path]
     elif error["type"] in {"model_type", "model_attributes_type"}:
