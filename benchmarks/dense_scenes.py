@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from dense_waves import _RIGHT, Beam, Dense, Rules, _clenshaw_curtis, _contour_end, outgoing
 from numpy.typing import NDArray
-from scipy.special import hankel1, h1vp, jv, jvp
+from scipy.special import h1vp, hankel1, jv, jvp
 
 Array = NDArray[Any]
 
@@ -93,7 +93,8 @@ def layer_matrices(
     for kind in (0, 1):
         admittance = [z if kind == 0 else z / n**2 for z, n in zip(normals, indices, strict=True)]
         # tangential field and its partner, from the far side back
-        field, partner, scale = np.ones_like(normals[-1]), admittance[-1], 1.0
+        field, partner = np.ones_like(normals[-1]), admittance[-1]
+        scale = np.ones_like(field)
         inner = zip(normals[1:-1], admittance[1:-1], thickness, strict=True)
         for z, q, d in reversed(list(inner)):
             # all over e^{−ikzd}, which overflows where light decays

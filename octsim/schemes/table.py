@@ -187,7 +187,7 @@ FULL_WAVE = Scheme(
     light="waves",
     controls_error=True,
     honours=_OF_BOTH
-    | {Ability.OFF_AXIS, Ability.AZIMUTH, Ability.SHELLS, Ability.LAYERS},
+    | {Ability.OFF_AXIS, Ability.AZIMUTH, Ability.SHELLS, Ability.LAYERS, Ability.CYLINDERS},
     mode_field_diameter=5.0,
     instrument=(
         "scene", "objective.numerical_aperture", "objective.magnification", "objective.pupil",

@@ -57,7 +57,8 @@ def contour(nodes: int, waves: ArrayLike, height: ArrayLike) -> Contour:
     exponent = 2 * orders * _FAR - 2 * heights * np.sin(_real(_FAR)) * np.sinh(_FAR)
     largest = np.maximum(exponent.max(axis=1, keepdims=True), 0.0)
     counts = (exponent > largest - _FALL).any(axis=0)
-    farthest = min(_FAR[np.append(0, np.flatnonzero(counts) + 1)[-1]], _LARGEST / orders.max())
+    last = min(np.append(0, np.flatnonzero(counts) + 1)[-1], len(_FAR) - 1)
+    farthest = min(_FAR[last], _LARGEST / orders.max())
     scale = _STEEPEST
     end = float(_real(np.array(farthest)) + farthest)
     x, w = gauss_legendre(nodes)

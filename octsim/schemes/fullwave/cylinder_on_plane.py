@@ -83,6 +83,12 @@ class CylinderOnPlane(NamedTuple):
         return self.room + sum(layer.thickness for layer in (*self.films, *self.above[:-1]))
 
     @property
+    def absorbs(self) -> bool:
+        """Whether light is lost anywhere."""
+        layers = (*self.shells, *self.films, *self.above)
+        return self.kappa > 0 or any(complex(layer.n).imag > 0 for layer in layers)
+
+    @property
     def one_plane(self) -> bool:
         """Whether there is but the plane between glass and water."""
         return not self.films and not self.above
@@ -98,22 +104,54 @@ def azimuth_of(scene: Scene) -> float:
 
 
 def cylinder_on_plane(scene: Scene, wavenumber: float = 1.0) -> CylinderOnPlane:
+    """Return the cylinder of a scene that reaches farthest, as `cylinders_of` has it."""
+    return cylinders_of(scene, wavenumber)[0]
+
+
+def cylinders_of(scene: Scene, wavenumber: float = 1.0) -> tuple[CylinderOnPlane, ...]:
     """Return a scene in numbers, at a wavenumber (1/µm); any, where its indices are constant.
+
+    Returns
+    -------
+    tuple of CylinderOnPlane
+        Among the same planes; the one that light returns from last is the first.
 
     Raises
     ------
     OctsimError
-        If it has another number of cylinders than one, it is not level, or light is lost in what
-        is below all planes or around the cylinder.
+        If there is no cylinder, one is not level, they are not parallel, or light is lost in what
+        is below all planes or around the cylinders.
     """
-    cylinder, shells = _one_cylinder(scene)
-    host, core = cylinder.outside, (shells[-1] if shells else cylinder).inside
-    for region in (scene.objective, host):
+    every = _cylinders(scene)
+    for place, (cylinder, _) in enumerate(every):
+        key = f"scene.cylinders.{place}"
+        if getattr(cylinder, "elevation", 0.0):
+            raise OctsimError(
+                f"{key}.elevation: given, but scheme fullwave has cylinders level; "
+                "give tracing.scheme: paths"
+            )
+        if cylinder.azimuth != every[0][0].azimuth:
+            raise OctsimError(
+                f"{key}.azimuth: not that of the first one, but scheme fullwave has parallel "
+                "cylinders; give tracing.scheme: paths"
+            )
+    if not every:
+        raise OctsimError("scene.cylinders: none given, but scheme fullwave needs one here")
+    for region in (scene.objective, every[0][0].outside):
         if region.attenuates:
             raise OctsimError(
-                f"scene: {region.name} attenuates, but scheme fullwave has a cylinder alone that "
-                "does; give tracing.scheme: paths or vogel"
+                f"scene: {region.name} attenuates, but scheme fullwave has light that is lost in "
+                "cylinders and films alone; give tracing.scheme: paths or vogel"
             )
+    found = [_among_planes(scene, *one, wavenumber) for one in every]
+    return tuple(sorted(found, key=lambda one: -one.far_side))
+
+
+def _among_planes(
+    scene: Scene, cylinder: Cylinder, shells: list[Cylinder], wavenumber: float
+) -> CylinderOnPlane:
+    """Return a cylinder, given by its surfaces, in numbers."""
+    host, core = cylinder.outside, (shells[-1] if shells else cylinder).inside
     planes = [surface for surface in scene.surfaces if isinstance(surface, Plane)]
     below = [plane for plane in planes if plane.height <= cylinder.z - cylinder.radius]
     above = planes[len(below) :]
@@ -141,31 +179,18 @@ def cylinder_on_plane(scene: Scene, wavenumber: float = 1.0) -> CylinderOnPlane:
     )  # fmt: skip
 
 
-def _one_cylinder(scene: Scene) -> tuple[Cylinder, list[Cylinder]]:
-    """Return the outermost surface of a scene's cylinder, and those within it, outside in."""
-    outermost: list[Cylinder] = []
-    shells: list[Cylinder] = []
+def _cylinders(scene: Scene) -> list[tuple[Cylinder, list[Cylinder]]]:
+    """Return the outermost surface of each cylinder, and those within it, outside in."""
+    found: list[tuple[Cylinder, list[Cylinder]]] = []
     for surface in scene.surfaces:
         if isinstance(surface, Plane):
             continue
-        # coaxial, and in what the one before is around
-        before = (shells or outermost)[-1:]
-        if before and before[0].inside == surface.outside:
-            shells.append(surface)
+        # within the one before, and in what that is around
+        if found and surface.outside == [found[-1][0], *found[-1][1]][-1].inside:
+            found[-1][1].append(surface)
         else:
-            outermost.append(surface)
-    if len(outermost) != 1:
-        raise OctsimError(
-            f"scene: {len(outermost)} cylinders given, but scheme fullwave solves for one; "
-            "give tracing.scheme: paths"
-        )
-    (cylinder,) = outermost
-    if getattr(cylinder, "elevation", 0.0):
-        raise OctsimError(
-            "scene.cylinders.0.elevation: given, but scheme fullwave has the cylinder level; "
-            "give tracing.scheme: paths"
-        )
-    return cylinder, shells
+            found.append((surface, []))
+    return found
 
 
 def _thickness(planes: list[Plane]) -> list[float]:

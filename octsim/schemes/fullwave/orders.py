@@ -36,6 +36,10 @@ class Orders(NamedTuple):
         # resonances along the cylinder make this integral the slowest to converge
         return Orders(waves, across, contour, self.along + max(3, math.ceil(0.35 * self.along)))
 
+    def with_those(self, other: "Orders") -> "Orders":
+        """Return what is enough for another point as well."""
+        return Orders(*map(max, self, other))
+
     @property
     def within_budget(self) -> bool:
         """Whether it is not more than is ever solved for."""

@@ -7,7 +7,7 @@ from octsim.base.errors import OctsimError
 from octsim.optics.polarisation import jones_rows
 from octsim.optics.scene import Plane, Scene
 from octsim.optics.zernike import Aberration
-from octsim.schemes.fullwave.cylinder_on_plane import azimuth_of, cylinder_on_plane
+from octsim.schemes.fullwave.cylinder_on_plane import azimuth_of, cylinders_of
 from octsim.schemes.fullwave.illumination import Wavefront
 from octsim.schemes.fullwave.operators import Operators
 from octsim.schemes.fullwave.plates import solve_plates, stack_of
@@ -54,19 +54,22 @@ def sharing(optics: Optics, options: Options, operators: Operators) -> LightAt:
         azimuth = azimuth_of(scene)
 
         def place_at(wavenumber: float) -> Place:
-            return Place(cylinder_on_plane(scene, wavenumber), optics.focus_at(focus, wavenumber))
+            first, *others = cylinders_of(scene, wavenumber)
+            return Place(first, optics.focus_at(focus, wavenumber), tuple(others))
 
-        numbers, height = place_at(middle)
+        numbers, height, others = place_at(middle)
         if not optics.numerical_aperture < numbers.n_water:
             raise OctsimError(
                 f"objective.numerical_aperture: {optics.numerical_aperture:g} given, but scheme "
                 "fullwave has no light that decays around the cylinder; give one below the index "
                 f"there, {numbers.n_water:g}, or tracing.scheme: paths"
             )
+        absorbs = any(one.absorbs for one in (numbers, *others))
         point = Point(
             numbers, optics.pupil, optics.numerical_aperture, height,
-            place_at if optics.scene_varies or numbers.kappa else None,
+            place_at if optics.scene_varies or absorbs else None,
             wavefront_by(optics.effects.aberration, azimuth), scene.intervals_within(*optics.band),
+            others,
         )  # fmt: skip
         found = solve(point, optics.band, options["accuracy"], operators)
         return found._replace(azimuth=azimuth)

@@ -31,8 +31,9 @@ Array = NDArray[Any]
 _SIGN = ((-1, 1), (1, -1))
 """What −k_y makes of E_y and H_y of light polarised across, and along."""
 _ITERATIONS = 60
-_MORE_NODES = 2.5
-"""Of a contour between cylinders, over those of one cylinder's own."""
+_TURNS = 1 / 16
+"""Nodes between cylinders, over those of one's own, by which there are more for each k times the
+distance across."""
 
 
 class Lights(NamedTuple):
@@ -45,12 +46,12 @@ class Lights(NamedTuple):
 
 
 class Several(NamedTuple):
-    """What is collected of cylinders, not over the norm yet: T, near sides and far sides, and what
-    it took."""
+    """What is collected of cylinders, not over the norm yet."""
 
     terms: Array
-    """(3, 2, K)."""
+    """Of all of it, of the near sides, and of the far sides, (3, 2, K)."""
     multiplications: float
+    """Complex ones that it took, about."""
 
 
 def several(
@@ -76,9 +77,11 @@ def several(
     """
     along, weight = along_nodes(lights.aperture, orders.along)
     waves = _waves_of_each(cylinders, orders.waves)
-    lit = [_regular(one, lights, along, k, m, orders) for one, m in zip(cylinders, waves, strict=True)]
+    lit = [
+        _regular(one, lights, along, k, m, orders) for one, m in zip(cylinders, waves, strict=True)
+    ]
     matrices = [
-        [_both_signs(t) for t in scattering_of(one, along, k, m)]
+        [both_signs(t) for t in scattering_of(one, along, k, m)]
         for one, m in zip(cylinders, waves, strict=True)
     ]
     epsilon = cylinders[0].n_water ** 2
@@ -103,8 +106,13 @@ def several(
                 for polarisation, (of_e, of_h) in enumerate(_SIGN):
                     # the detected mode's, at −m
                     e, h = (part[:, ::-1] for part in one[polarisation, number].swapaxes(0, 1))
-                    found = of_e * epsilon * e * b[polarisation, :, 0] - of_h * h * b[polarisation, :, 1]
-                    collected[term, polarisation, number] += ((found * turn).sum(-1) * measure).sum()
+                    found = (
+                        of_e * epsilon * e * b[polarisation, :, 0]
+                        - of_h * h * b[polarisation, :, 1]
+                    )
+                    collected[term, polarisation, number] += (
+                        (found * turn).sum(-1) * measure
+                    ).sum()
     return Several(collected, taken)
 
 
@@ -134,7 +142,7 @@ def _regular(
     return found
 
 
-def _both_signs(matrix: Array) -> Array:
+def both_signs(matrix: Array) -> Array:
     """Return T of orders −M … M, (K, Y, 2, 2, 2M + 1): light along turns the other way for −m."""
     mirrored = matrix[..., :0:-1].copy()
     mirrored[0, 1] *= -1
@@ -147,12 +155,12 @@ def _between(
     waves: list[int], orders: Orders,
 ) -> Array:  # fmt: skip
     """Return R from all outgoing waves to all regular ones, (Y, N, N)."""
-    nodes = math.ceil(_MORE_NODES * orders.contour)
     rows = []
     for to, waves_to in zip(cylinders, waves, strict=True):
         row = []
         for of, waves_of in zip(cylinders, waves, strict=True):
             step = Step(of, to)
+            nodes = math.ceil(orders.contour * (1 + _TURNS * k * abs(step.across)))
             by = (
                 back_to_itself(of, along, k, waves_of, orders.contour)
                 if of is to
@@ -187,7 +195,7 @@ def _incoming(
         Of both polarisations.
     tolerance : float
     """
-    t = _blocks(whole)
+    t = in_blocks(whole)
     # unknowns are b over the root of T, which falls with the order as fast as R grows
     scale = np.sqrt(np.abs(t).max(axis=(0, 2)))
     inverse = np.divide(1.0, scale, out=np.zeros_like(scale), where=scale > 0)
@@ -210,7 +218,7 @@ def _incoming(
     return regular + np.moveaxis(between @ np.moveaxis(b * scale, 0, -1), -1, 0), steps
 
 
-def _blocks(whole: list[Array]) -> Array:
+def in_blocks(whole: list[Array]) -> Array:
     """Return T of all cylinders as matrices (Y, N, N)."""
     sizes = [2 * t.shape[-1] for t in whole]
     found = np.zeros((len(whole[0]), sum(sizes), sum(sizes)), np.complex128)

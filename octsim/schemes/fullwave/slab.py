@@ -102,8 +102,10 @@ def returned(planes: Planes, b_e: Array, b_h: Array, waves_of: Both, mirror: int
     found = np.empty_like(b_e), np.empty_like(b_h)
     # one wavenumber at a time, which fast memory holds
     for number in range(len(b_e)):
-        one = at(planes, number), signs * b_e[number], signs * b_h[number], waves_of, mirror
-        found[0][number], found[1][number] = _returned_once(*one)
+        slab = Slab(*(_at(part, number) for part in planes))
+        found[0][number], found[1][number] = _returned_once(
+            slab, signs * b_e[number], signs * b_h[number], waves_of, mirror
+        )
     return found
 
 
@@ -134,8 +136,12 @@ def parities(mirror: int) -> tuple[int, int]:
 def at(planes: Planes, one: Any) -> Planes:
     """Return what planes do at some k and k_y."""
     if isinstance(planes, Coupling):
-        return Coupling(*(part[one] for part in planes))
-    return Slab(*(Coupling(*(part[one] for part in each)) for each in planes))
+        return _at(planes, one)
+    return Slab(*(_at(part, one) for part in planes))
+
+
+def _at(by: Coupling, one: Any) -> Coupling:
+    return Coupling(*(part[one] for part in by))
 
 
 def returned_matrices(planes: Planes, waves_of: Both, mirror: int) -> list[list[Array]]:

@@ -173,6 +173,8 @@ def solve(point: Point, band: tuple[float, float], accuracy: float, operators: O
     """
     scene, _, aperture, focus = point[:4]
     orders = first_orders(scene, aperture, focus, band[1], accuracy)
+    for neighbour in point.neighbours:
+        orders = orders.with_those(first_orders(neighbour, aperture, focus, band[1], accuracy))
     number = first_nodes(scene, aperture, focus, band, accuracy)
     most = most_nodes(scene, band, accuracy)
     if point.intervals:

@@ -150,7 +150,7 @@ def test_thin_cylinders_return_light_by_their_area() -> None:
     np.testing.assert_allclose(fields[0] / fields[1], 4, rtol=2e-4)
 
 
-EXTREMES = {
+EXTREMES: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "10 nm": ({"diameter": 0.01}, {}),
     "1 nm": ({"diameter": 1e-3}, {}),
     "weak": ({"n_neuron": 1.33 + 1e-12}, {}),

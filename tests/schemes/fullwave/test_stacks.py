@@ -116,10 +116,13 @@ def test_it_is_that_of_dense_rules(layered: Layered) -> None:
 
 
 def scene_in_numbers(layered: Layered) -> CylinderOnPlane:
-    each = (tuple(Layer(*one) for one in layers) for layers in (layered.shells, layered.films))
+    shells, films, above = (
+        tuple(Layer(*one) for one in layers)
+        for layers in (layered.shells, layered.films, layered.above)
+    )
     return CylinderOnPlane(
         layered.n_glass, layered.n_water, layered.n_neuron.real, layered.gap, layered.diameter,
-        layered.offset, 0.0, *each, layered.room, tuple(Layer(*one) for one in layered.above),
+        layered.offset, 0.0, shells, films, layered.room, above,
     )  # fmt: skip
 
 
