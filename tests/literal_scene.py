@@ -1,15 +1,16 @@
 r"""A slow, literal tracer of any scene, with every effect of `literal_effects`: an oracle.
 
-A ray knows where it is: which layer, which cylinder there, and how many of its walls are around it.
-What it can meet next are the planes of its layer and the walls next to it; what is beyond a plane is
-found from the place alone: which walls are around that point, if the layer beyond is the cylinders'.
-A wall or plane with one medium, by its name, on both sides is passed as if it were not there.
+A ray knows where it is: in which layer, in which cylinder there, and how many of its walls are
+around it. What it can meet next are the planes of its layer and the walls next to it; what is
+beyond a plane is found from the place alone: which walls are around it, if that layer is the
+cylinders'. A wall or plane with one medium on both sides, by its name, is passed as if it were not
+there.
 
-Conventions: ``effects.md`` section 1, rows "layers", "cylinders" and "shells". No code is shared with
-the package. Units: µm, 1/µm, degrees.
+Conventions: ``effects.md`` section 1, rows "layers", "cylinders" and "shells". No code is shared
+with the package. Units: µm, 1/µm, degrees.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -22,7 +23,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[Any]
 NOTHING, LOWER, UPPER, OUTER, INNER = range(5)
-"""What a ray stands on, or meets: nothing, planes of its layer, walls around it, of what is inside."""
+"""What a ray stands on, or meets: nothing, a plane of its layer, the wall around it, one inside."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ class Scene:
     layers: tuple[tuple[str, float], ...] = (("glass", np.inf), ("water", np.inf))
     host: int = 1
     tubes: tuple[Tube, ...] = (Tube(),)
-    media: dict[str, Index] = field(default_factory=dict)
+    media: Mapping[str, Index] = field(default_factory=dict)
 
     def bottom(self, layer: int) -> float:
         """Height of a layer's lower plane."""
@@ -100,7 +101,12 @@ class Rays:
 
 
 def joined(parts: list[Rays]) -> Rays:
-    return Rays(*(np.concatenate(values) for values in zip(*(vars(one).values() for one in parts), strict=True)))
+    return Rays(
+        *(
+            np.concatenate(values)
+            for values in zip(*(vars(one).values() for one in parts), strict=True)
+        )
+    )
 
 
 def crossings(centre: Array, axis: Array, radius: float, rays: Rays) -> tuple[Array, Array]:
@@ -215,19 +221,19 @@ class Tracer:
         axis = self.scene.tubes[which].axis
         out = rays.position - self.scene.centre(which)
         out = out - np.outer(out @ axis, axis)
-        return out / np.linalg.norm(out, axis=1, keepdims=True)
+        unit: Array = out / np.linalg.norm(out, axis=1, keepdims=True)
+        return unit
 
     def medium(self, rays: Rays) -> int:
         place = int(rays.layer[0]), int(rays.tube[0]), int(rays.depth[0])
         return self.number[self.scene.medium(*place)]
 
     def children(self, rays: Rays) -> list[Rays]:
-        """What rays of one place become where they meet something."""
+        """Return what rays of one place become where they meet something."""
         distance, what, which = distances(self.scene, rays)
         n, mu = self.colour.n[self.medium(rays)], self.colour.mu[self.medium(rays)]
-        rays, distance, what, which = (
-            one[np.isfinite(distance)] for one in (rays, distance, what, which)
-        )
+        met = np.isfinite(distance)
+        rays, distance, what, which = rays[met], distance[met], what[met], which[met]
         rays = replace(
             rays,
             position=rays.position + distance[:, np.newaxis] * rays.direction,
@@ -275,7 +281,7 @@ class Tracer:
         return [back, through[cos_squared[:, 0] >= 0]]
 
     def fields(self, disk: Array) -> Iterator[Array]:
-        """What each generation brings to the detector."""
+        """Yield what each generation brings to the detector."""
         start = launch(self.setup, self.colour, disk)
         none = np.zeros(len(start.path), int)
         rays = Rays(
@@ -291,15 +297,13 @@ class Tracer:
             rays = joined(born)
             home = (rays.layer == 0) & (rays.direction[:, 2] < 0)
             back = rays[home]
-            yield collect(
-                self.setup, self.colour,
-                Beam(back.position, back.direction, back.carried, back.path, back.layer, back.met > 0),
-            )  # fmt: skip
+            arrived = back.position, back.direction, back.carried, back.path
+            yield collect(self.setup, self.colour, Beam(*arrived, back.layer, back.met > 0))
             rays = rays[~home]
 
 
 def intensity(scene: Scene, setup: Setup, wavenumbers: Array) -> Array:
-    """Return I (K,) at wavenumbers (K,); media of the set-up, and those of the scene beside them."""
+    """Return I (K,) at wavenumbers (K,); media are of the set-up, and those of the scene."""
     names = ["glass", *dict.fromkeys(name for name in ("water", "neuron", *scene.media))]
     found = np.zeros(len(wavenumbers))
     for i, k in enumerate(np.asarray(wavenumbers, dtype=float)):
@@ -307,9 +311,7 @@ def intensity(scene: Scene, setup: Setup, wavenumbers: Array) -> Array:
         index = np.array([index_of(scene, setup, name, wavelength) for name in names])
         given = np.array([setup.attenuation.get(name, 0.0) for name in names])
         base = Colour.of(setup, float(k))
-        colour = replace(
-            base, n=index.real, mu=given + 4 * np.pi * index.imag / wavelength
-        )
+        colour = replace(base, n=index.real, mu=given + 4 * np.pi * index.imag / wavelength)
         assert names[GLASS] == "glass"
         tracer = Tracer(scene, setup, colour, {name: place for place, name in enumerate(names)})
         field_at_k = sum(tracer.fields(vogel_disk(setup.rays)), start=np.zeros(()))

@@ -42,7 +42,9 @@ def tube(**given: Any) -> dict[str, Any]:
     return {"medium": "neuron", **plain, **({"shells": layers} if layers else {})}
 
 
-def case(*tubes: dict[str, Any], layers: tuple[tuple[str, float], ...] = (), most: int = 11) -> SceneCase:
+def case(
+    *tubes: dict[str, Any], layers: tuple[tuple[str, float], ...] = (), most: int = 11
+) -> SceneCase:
     """Return a scene of tubes, the first of which is swept, in layers (medium, thickness)."""
     stack = layers or (("glass", np.inf), ("water", np.inf))
     used = {medium for one in tubes for medium, _ in one.get("shells", ())}
@@ -61,7 +63,8 @@ def case(*tubes: dict[str, Any], layers: tuple[tuple[str, float], ...] = (), mos
             "cylinders": [tube(**one) for one in tubes],
         },
     }
-    host = max(place for place, (medium, _) in enumerate(stack) if medium == "water")
+    water = [place for place, (medium, _) in enumerate(stack) if medium == "water"]
+    host = max(water, default=len(stack) - 1)
     scene = Scene(stack, host, tuple(Tube(**one) for one in tubes), media)
     return SceneCase(overlay, scene, {"max_intersections": most})
 
@@ -98,8 +101,9 @@ SCENES: dict[str, SceneCase] = {
     ),
     "cover glass": case({}, layers=COVERED),
     "film": case({}, layers=(("glass", np.inf), ("film", 0.1), ("water", np.inf))),
-    "under a film": case({}, layers=STACK[:3] + (("film", np.inf),), most=9),
+    "under a film": case({}, layers=(*STACK[:3], ("film", np.inf)), most=9),
     "a slide of two": case({}, layers=(("glass", np.inf), ("glass", 1.0), ("water", np.inf))),
+    "in one medium": case({}, layers=(("glass", np.inf), ("glass", np.inf))),
     "between two planes, elevation": case({"elevation": 5.0}, layers=LOW, most=8),
     "everything": case(
         {**TWO, "elevation": 4.0, "azimuth": 10.0, "x": 0.02},

@@ -63,7 +63,7 @@ class Tracing(Section):
     )
     rays: Annotated[int, Field(ge=1, le=10_000_000)] = _key(3000, "at the objective")
     max_intersections: Annotated[int, Field(ge=1, le=60)] = _key(
-        11, "meetings with the plane and the cylinder on one ray"
+        11, "meetings with planes and cylinders on one ray"
     )
     min_amplitude: Annotated[Number, Field(ge=0, lt=1)] = _key(
         0.0, "a fainter counted ray is dropped; relative to the launch amplitude"

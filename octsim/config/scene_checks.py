@@ -16,6 +16,7 @@ from octsim.schemes.table import SCHEMES
 _THESIS = ("glass", "water", "neuron")
 _TRIED = 128  # steps over the band in which an index is looked at
 _PISTON = 1
+_CONTACT = 1e-12  # relative rounding of lengths of bodies that touch
 _SMALL_RMS = 5e-3  # µm
 
 
@@ -178,19 +179,26 @@ def _sizes(config: Config) -> Iterator[str]:
                 f"{key}.shells: {format_length(thick)} thick together, but the radius by {name} is "
                 f"{format_length(diameter / 2)}; give thinner shells or a larger diameter"
             )
+        below = {one.medium for one in scene.layers[: scene.host + 1]}
+        if cylinder.elevation and len(below) == 1:
+            yield (
+                f"{key}.elevation: given, but below it is nothing but {scene.host_medium}, as "
+                "around it, so that it would end at no plane; give 0 deg, or another layer below"
+            )
         layer = scene.layers[scene.host]
         name, diameter = own or largest
         top = scene.gap_of(cylinder) + diameter
-        if isinstance(layer.thickness, float) and not cylinder.elevation and top > layer.thickness:
+        height = layer.thickness if isinstance(layer.thickness, float) else math.inf
+        if not cylinder.elevation and top > (1 + _CONTACT) * height:
             yield (
                 f"{key}: reaches {format_length(top)} above the lower plane of its layer (its gap "
-                f"and {name}), through the upper one at {format_length(layer.thickness)}; give "
+                f"and {name}), through the upper one at {format_length(height)}; give "
                 f"scene.layers.{scene.host}.thickness more, or a smaller diameter"
             )
     bodies = [_body(scene, place, largest[1]) for place in range(len(scene.cylinders))]
     for one, other in itertools.combinations(bodies, 2):
         apart, needed = _distance(one, other), one.radius + other.radius
-        if apart < needed:
+        if apart < (1 - _CONTACT) * needed:
             yield (
                 f"{other.key}: overlaps {one.key}: their axes are {apart:.6g} um apart and their "
                 f"radii together {needed:.6g} um (at {largest[0]}); give another x, gap or azimuth"

@@ -4,11 +4,13 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from octsim.config.models import Config
-from octsim.config.scene import SceneConfig
+from octsim.config.scene import CylinderConfig, SceneConfig
 from octsim.schemes.cost import MOST_PIECES, tree_pieces
 from octsim.schemes.table import SCHEMES
 
 _THESIS = 11  # intersections
+MOST_PATHS = 2**62
+"""Light paths that a code has room for, as `octsim.tracing.path_counts` has it."""
 
 
 def pieces_of_tree(config: Config) -> float | None:
@@ -22,6 +24,24 @@ def pieces_of_tree(config: Config) -> float | None:
     return tree_pieces(surfaces, tracing.max_intersections, tracing.min_amplitude)
 
 
+def paths_by_digits(scene: SceneConfig) -> int:
+    """Return the number of surfaces where each meeting is a digit of a path's number; else 0."""
+    planes = _changes([layer.medium for layer in scene.layers])
+    if not scene.cylinders:
+        return planes
+    walls = [_changes(_inwards(scene, one)) for one in scene.cylinders]
+    lone = planes == 1 and walls == [1] and not scene.cylinders[0].elevation
+    return 2 if lone else 0
+
+
+def _inwards(scene: SceneConfig, cylinder: CylinderConfig) -> list[str]:
+    return [scene.host_medium, *(shell.medium for shell in cylinder.shells), cylinder.medium]
+
+
+def _changes(media: list[str]) -> int:
+    return sum(one != other for one, other in pairwise(media))
+
+
 def _more_surfaces(scene: SceneConfig) -> int:
     """Return how many planes and walls there are on a way that the thesis's scene does not have.
 
@@ -33,15 +53,20 @@ def _more_surfaces(scene: SceneConfig) -> int:
         return sum(index[one] != index[other] for one, other in pairwise(media))
 
     planes = contrasts([layer.medium for layer in scene.layers])
-    walls = (
-        contrasts([scene.host_medium, *(shell.medium for shell in one.shells), one.medium])
-        for one in scene.cylinders
-    )
+    walls = (contrasts(_inwards(scene, one)) for one in scene.cylinders)
     return max(0, planes - 1 + max(walls) - 1)
 
 
 def impossible_tree(config: Config) -> Iterator[str]:
-    """Say if the trees of a point go beyond what can be kept."""
+    """Say if the trees of a point go beyond what can be kept, or their paths beyond numbers."""
+    surfaces, given = paths_by_digits(config.scene), config.tracing.max_intersections
+    if surfaces and SCHEMES[config.tracing.scheme].light == "rays":
+        most = next(n for n in range(64) if (2 * surfaces) ** (n + 1) >= MOST_PATHS)
+        if given > most:
+            yield (
+                f"tracing.max_intersections: {given} given, but the light paths of so many "
+                f"meetings with {surfaces} surfaces can't be numbered; give {most} or less"
+            )
     pieces, rays = pieces_of_tree(config), config.tracing.rays
     if pieces and pieces * rays > MOST_PIECES:
         yield (

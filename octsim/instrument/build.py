@@ -58,12 +58,14 @@ def scene_of(config: Config, diameter: float) -> Scene:
         return Region(medium, scene.refractive_index.of[medium], taken)
 
     layers = [
-        Layer(region(layer.medium), *([thick] if isinstance(thick := layer.thickness, float) else []))
+        Layer(
+            region(layer.medium), *([thick] if isinstance(thick := layer.thickness, float) else [])
+        )
         for layer in scene.layers
     ]
     bodies = [
         Body(
-            tuple(region(part.medium) for part in (*cylinder.shells, cylinder)),
+            (*(region(shell.medium) for shell in cylinder.shells), region(cylinder.medium)),
             tuple(shell.thickness for shell in cylinder.shells),
             diameter if cylinder.diameter is None else cylinder.diameter,
             scene.gap_of(cylinder), cylinder.x, cylinder.azimuth, cylinder.elevation,

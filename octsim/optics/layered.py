@@ -1,7 +1,7 @@
 """Scenes of any layers and cylinders: which surfaces there are between them, and their names.
 
-A medium on both sides, by its name, is no surface. Cylinders lie in one layer, their host, and exist
-nowhere else: a lifted one ends at its host's planes, with a part of the plane of its own.
+A medium on both sides, by its name, is no surface. Cylinders lie in one layer, their host, and
+exist nowhere else: a lifted one ends at its host's planes, with a part of the plane of its own.
 """
 
 import math
@@ -72,7 +72,8 @@ def layered(layers: Sequence[Layer], host: int, bodies: Sequence[Body]) -> Scene
     tops = tuple(accumulate((layer.thickness for layer in layers[1:-1]), initial=0.0))
     regions, heights, around = [named(layers[0].medium)], [], 0
     for place, (below, above) in enumerate(pairwise(layers), start=1):
-        if above.medium.name != below.medium.name:
+        embedded = place == host and len(regions) == 1 and bool(bodies)
+        if above.medium.name != below.medium.name or embedded:
             regions.append(named(above.medium))
             heights.append(tops[place - 1])
         if place == host:
@@ -80,14 +81,21 @@ def layered(layers: Sequence[Layer], host: int, bodies: Sequence[Body]) -> Scene
     floor = tops[host - 1] if host > 0 else 0.0
     medium = layers[host].medium.name
     walls = [_walls(body, floor, medium, regions[around], named) for body in bodies]
-    planes = [Plane(one.name, z, one, other) for z, (one, other) in zip(heights, pairwise(regions))]
+    between = zip(heights, pairwise(regions), strict=True)
+    planes = [Plane(one.name, z, one, other) for z, (one, other) in between]
     parts = [
         part
         for plane in planes
         for part in _parts(plane, regions[around], [chain for chain in walls if chain])
     ]
     surfaces: tuple[Surface, ...] = (*parts, *(wall for chain in walls for wall in chain))
-    return Scene(regions[0], _with_thesis_names(surfaces))
+    # cylinders in the objective's medium have a plane below them that is none, once in and once out
+    unseen = 2 if host > 0 and around == 1 and _alike(layers[: host + 1]) else 0
+    return Scene(regions[0], _with_thesis_names(surfaces), unseen)
+
+
+def _alike(layers: Sequence[Layer]) -> bool:
+    return len({layer.medium.name for layer in layers}) == 1
 
 
 def _numbered() -> Callable[[Region], Region]:
@@ -143,8 +151,8 @@ def _parts(
 
 def _with_thesis_names(surfaces: tuple[Surface, ...]) -> tuple[Surface, ...]:
     flat = [surface for surface in surfaces if not isinstance(surface, Cylinder)]
-    if len({surface.height for surface in flat}) > 1 or len(surfaces) != len(flat) + 1:
+    if len({surface.height for surface in flat}) > 1 or len(surfaces) > len(flat) + 1:
         return surfaces
     plane, cylinder = NEURON_ON_GLASS
     names = (plane, NEURON_FOOT, cylinder) if len(flat) > 1 else (plane, cylinder)
-    return tuple(replace(one, name=name) for one, name in zip(surfaces, names, strict=True))
+    return tuple(replace(one, name=name) for one, name in zip(surfaces, names, strict=False))

@@ -61,11 +61,6 @@ class Plane:
         """Its shape in numbers: height, µm."""
         return (self.height,)
 
-    @property
-    def symmetry(self) -> Symmetry:
-        """Its symmetry."""
-        return Symmetry(x=True, y=True)
-
 
 @dataclass(frozen=True)
 class Cylinder:
@@ -108,15 +103,11 @@ class Cylinder:
         place = self.x, self.z, self.radius
         return place if self.along_y else (*place, *self.axis)
 
-    @property
-    def symmetry(self) -> Symmetry:
-        """Its symmetry."""
-        return Symmetry(x=self.azimuth == 0 and self.x == 0, y=self.along_y)
-
     def mirrored(self, *, x: bool) -> "Cylinder":
         """Return it as seen in the plane x = 0, or in y = 0."""
-        place = {"x": -self.x} if x else {"elevation": -self.elevation}
-        return replace(self, azimuth=-self.azimuth, **place)
+        if x:
+            return replace(self, x=-self.x, azimuth=-self.azimuth)
+        return replace(self, azimuth=-self.azimuth, elevation=-self.elevation)
 
 
 @dataclass(frozen=True)
@@ -145,11 +136,6 @@ class PlanePart:
         """Its shape in numbers: height, µm."""
         return (self.height,)
 
-    @property
-    def symmetry(self) -> Symmetry:
-        """Its symmetry; that of the cylinders that end there is theirs."""
-        return Symmetry(x=True, y=True)
-
 
 Surface = Plane | PlanePart | Cylinder
 
@@ -160,6 +146,8 @@ class Scene:
 
     objective: Region
     surfaces: tuple[Surface, ...]
+    unseen_meetings: int = 0
+    """Meetings of each light path with a plane that is none; they do not count."""
 
     @property
     def regions(self) -> tuple[Region, ...]:

@@ -1,9 +1,9 @@
-"""Where a ray meets a cylinder of any direction, and its normal; as `octsim.optics.intersection`.
+r"""Where a ray meets a cylinder of any direction, and its normal; as `octsim.optics.intersection`.
 
-All is seen in the cross section, across the axis: with :math:`\\hat a` along it and w from the ray to
-a point of it, the ray heads along :math:`v_\\perp = \\hat v - (\\hat v\\cdot\\hat a)\\hat a`, is half way
-through at :math:`m' = w\\cdot v_\\perp / |v_\\perp|`, and passes the axis at the distance
-:math:`b = (w\\times\\hat v)\\cdot\\hat a / |v_\\perp|`.
+All is seen in the cross section, across the axis. With :math:`\hat a` along it and w from the ray
+to a point of it, the ray heads along :math:`v_\perp = \hat v - (\hat v\cdot\hat a)\hat a`, is half
+way through at :math:`m' = w\cdot v_\perp / |v_\perp|`, and passes the axis at the distance
+:math:`b = (w\times\hat v)\cdot\hat a / |v_\perp|`.
 """
 
 import math

@@ -81,8 +81,8 @@ def _over_band(
         return _one_by_one(spiral, k, only, known)
     if spiral.scene.rows_within(k[0], k[-1]) > _ROWS:
         # a table may turn between nodes that are too far apart to see it
-        halves = np.array_split(k, 2)
-        return _joined([_over_band(spiral, part, only, known, number) for part in halves])
+        low_high = np.array_split(k, 2)
+        return _joined([_over_band(spiral, part, only, known, number) for part in low_high])
     at = nodes_within(k[0], k[-1], number)
     traced = [_unknown(spiral.at(one, only), known) for one in at.tolist()]
     tracks, apart = _tracks(spiral, traced, k[-1])
@@ -110,16 +110,16 @@ def _all_light(parts: list[Light], options: Options) -> Light:
     """Return the light of one share of rays after the other as that of all."""
     light = parts[0]
     if len(parts) > 1:
-        arrays = ("path", "amplitude", "rough_amplitude", "optical_path_length", "lengths")
-        held = {
-            name: None
-            if getattr(light, name) is None
-            else np.concatenate([getattr(one, name) for one in parts], axis=-1)
-            for name in arrays
-        }
-        outcomes = sum((one.outcomes for one in parts if one.outcomes is not None), np.int64(0))
-        segments = sum(one.segments for one in parts)
-        light = light._replace(**held, segments=segments, outcomes=outcomes)
+        ways = [one.lengths for one in parts if one.lengths is not None]
+        light = light._replace(
+            path=np.concatenate([one.path for one in parts]),
+            amplitude=np.concatenate([one.amplitude for one in parts]),
+            rough_amplitude=np.concatenate([one.rough_amplitude for one in parts]),
+            optical_path_length=np.concatenate([one.optical_path_length for one in parts]),
+            lengths=np.concatenate(ways, axis=1) if ways else None,
+            segments=sum(one.segments for one in parts),
+            outcomes=np.sum([one.outcomes for one in parts if one.outcomes is not None], axis=0),
+        )
     assert light.outcomes is not None
     return light._replace(missing=dropped_field(light.outcomes, options))
 

@@ -3,7 +3,8 @@
 import functools
 import math
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,6 +14,7 @@ from octsim.config.derive import by_light_paths, counting_rays
 from octsim.config.grid import axes, combinations
 from octsim.config.models import Config
 from octsim.config.scheme import point_cost, rate_name, scheme_of
+from octsim.config.tree import paths_by_digits
 from octsim.datasets.catalog import CATALOG
 from octsim.datasets.keys import keys_behind, stages_of
 from octsim.datasets.stage import RAYS, Stage
@@ -165,7 +167,7 @@ def check_budget(config: Config, cost: Cost, folder: Path) -> None:
         With the key that confirms it.
     """
     hours, disk = cost.cpu_seconds / 3600, cost.disk_bytes / 1e9
-    budget, problems = config.budget, []
+    budget, problems = config.budget, [*_uncounted(config)]
     if hours > budget.cpu_hours:
         problems.append(
             f"budget.cpu_hours: {budget.cpu_hours:g} given, but this run takes about {hours:.3g} "
@@ -185,6 +187,22 @@ def check_budget(config: Config, cost: Cost, folder: Path) -> None:
         )
     if problems:
         raise ConfigError("\n".join(problems))
+
+
+def _uncounted(config: Config) -> Iterator[str]:
+    """Say where the light paths of a combination's scene can't be numbered."""
+    for at in combinations(config, "scene", "tracing"):
+        # of others the config has been checked, without a compiler
+        if not scheme_of(at.config).counts_rays or paths_by_digits(at.config.scene):
+            continue
+        given = at.config.tracing.max_intersections
+        most = import_module("octsim.instrument.path_room").most_intersections(at.config)
+        if given > most:
+            yield (
+                f"tracing.max_intersections: {given} given, but the light paths of so many "
+                f"meetings in this scene can't be numbered; give {most} or less"
+            )
+            return
 
 
 def _time(seconds: float) -> str:

@@ -1,4 +1,4 @@
-"""Light paths of all combinations of a grid by one code each: scenes of other surfaces have others."""
+"""Light paths of all combinations of a grid, by one code each, whatever their scenes' surfaces."""
 
 import hashlib
 

@@ -35,8 +35,11 @@ MET_AGAIN = (Kind.CYLINDER_FROM_INSIDE,)
 """Faces that what stands on them can meet again at once; what stands on others can't."""
 
 
-class Faces(NamedTuple):
-    """Tables of F faces and D departures, for compiled code; departure 0 is the launch."""
+class PlainFaces(NamedTuple):
+    """Tables of F faces and D departures, for compiled code; departure 0 is the launch.
+
+    They are those of the thesis's scene, or of plates.
+    """
 
     kind: NDArray[np.int64]
     """`Kind` of each face, (F,)."""
@@ -85,7 +88,7 @@ class Meeting(IntEnum):
 
 
 class AnyFaces(NamedTuple):
-    """The tables of any scene: those of `Faces`, and what a general one needs besides.
+    """The tables of any scene: those of `PlainFaces`, and what a general one needs besides.
 
     Code is compiled anew for it, so that the thesis's scene has nothing of it.
     """
@@ -108,9 +111,12 @@ class AnyFaces(NamedTuple):
     """`Meeting` of each face in `next_face`."""
     counts: NDArray[np.int64]
     """Number of light paths of some more meetings from a departure to the objective, (L, D); of no
-    L where the codes of paths are those of `Faces`."""
+    L where the codes of paths are those of `PlainFaces`."""
     numbers: NDArray[np.int64]
     """Code of the first path of some meetings, (L,)."""
+
+
+Faces = PlainFaces | AnyFaces
 
 
 @register_jitable(forceinline=True)
@@ -119,7 +125,7 @@ def is_flat(kind: int) -> bool:
     return kind == Kind.PLANE_FROM_BELOW or kind == Kind.PLANE_FROM_ABOVE
 
 
-def faces_at(scene: Scene, wavenumber: float) -> Faces | AnyFaces:
+def faces_at(scene: Scene, wavenumber: float) -> Faces:
     """Return the tables of a scene at a wavenumber, 1/µm; any, where all materials are constant."""
     index = [region.material.index(wavenumber).real for region in scene.regions]
     faces = _faces(scene, np.array(index))
@@ -129,7 +135,8 @@ def faces_at(scene: Scene, wavenumber: float) -> Faces | AnyFaces:
 def most_meetings(scene: Scene) -> int:
     """Return the most meetings of which all light paths of a scene have a code."""
     if _is_plain(scene) or not _is_counted(scene):
-        return next(n for n in range(64) if (2 * len(scene.surfaces)) ** (n + 1) >= MOST_PATHS)
+        digits = max(2, 2 * len(scene.surfaces))
+        return next(n for n in range(64) if digits ** (n + 1) >= MOST_PATHS)
     return len(_counts(_faces(scene, np.ones(len(scene.regions))))) - 1
 
 
@@ -143,7 +150,7 @@ def _is_counted(scene: Scene) -> bool:
     return len(scene.surfaces) > 2
 
 
-def _faces(scene: Scene, index: NDArray[np.float64]) -> Faces:
+def _faces(scene: Scene, index: NDArray[np.float64]) -> PlainFaces:
     regions, surfaces = scene.regions, scene.surfaces
     # faces 2 s and 2 s + 1 are those of surface s
     sides = [(s, regions.index(r)) for s, surface in enumerate(surfaces) for r in surface.sides]
@@ -160,11 +167,11 @@ def _faces(scene: Scene, index: NDArray[np.float64]) -> Faces:
     face = np.arange(len(sides))
     region = np.array([region for _, region in sides], np.int64)
     rows = [surface.row for surface in surfaces for _ in surface.sides]
-    width = max(map(len, rows), default=0)
-    return Faces(
+    width = max(map(len, rows), default=1)
+    return PlainFaces(
         kind=np.array(kinds, np.int64),
         surface=face // 2,
-        shape=np.array([row + (width - len(row)) * (0.0,) for row in rows]),
+        shape=np.array([row + (width - len(row)) * (0.0,) for row in rows]).reshape(-1, width),
         region=region,
         n_i=index[region],
         n_t=index[region[face ^ 1]],
@@ -177,7 +184,7 @@ def _faces(scene: Scene, index: NDArray[np.float64]) -> Faces:
     )
 
 
-def _any_faces(scene: Scene, faces: Faces) -> AnyFaces:
+def _any_faces(scene: Scene, faces: PlainFaces) -> AnyFaces:
     rows = [_shape(surface) for surface in scene.surfaces for _ in surface.sides]
     width = max(map(len, rows))
     standing = np.concatenate(([-1], faces.surface))
@@ -194,7 +201,7 @@ def _any_faces(scene: Scene, faces: Faces) -> AnyFaces:
     )  # fmt: skip
 
 
-def _counts(faces: Faces) -> NDArray[np.int64]:
+def _counts(faces: PlainFaces) -> NDArray[np.int64]:
     return path_counts(
         faces.first, faces.next_face, faces.after_reflection, faces.after_transmission,
         faces.to_objective,

@@ -5,10 +5,11 @@ surface's number, plus one if the light goes through. A leading 1 keeps the zero
 scenes are counted instead (`octsim.tracing.path_codes`).
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 import numpy as np
-from numba.extending import register_jitable
+from numba.extending import overload, register_jitable
 from numpy.typing import NDArray
 
 from octsim.optics.scene import Scene
@@ -57,11 +58,7 @@ def names_of_paths(scene: Scene, wavenumber: float, codes: Iterable[int]) -> lis
 
 
 @register_jitable
-def steps_of(faces: Faces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]) -> int:
-    """Read a path's code into the faces that it meets, and how it leaves each; return how many.
-
-    `face` and `through` have room for `LONGEST` meetings.
-    """
+def _by_digits(faces: Faces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]) -> int:
     base, num = faces.kind.size, 0
     rest = code
     while rest > 1:
@@ -77,3 +74,47 @@ def steps_of(faces: Faces, code: int, face: NDArray[np.int64], through: NDArray[
         after = faces.after_transmission if through[m] else faces.after_reflection
         departure = after[face[m]]
     return num
+
+
+@register_jitable
+def _by_count(
+    faces: AnyFaces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]
+) -> int:
+    if faces.counts.shape[0] == 0:
+        return _by_digits(faces, code, face, through)
+    num = 0
+    while num + 1 < faces.numbers.size and faces.numbers[num + 1] <= code:
+        num += 1
+    rest, departure = code - faces.numbers[num], 0
+    for m in range(num):
+        here = departure
+        for choice in range(faces.first[here], faces.first[here + 1]):
+            f = faces.next_face[choice]
+            back, beyond = faces.after_reflection[f], faces.after_transmission[f]
+            reflected, transmitted = (
+                faces.counts[num - 1 - m, back],
+                faces.counts[num - 1 - m, beyond],
+            )
+            if rest < reflected + transmitted:
+                face[m], through[m] = f, rest >= reflected
+                rest -= reflected if through[m] else 0
+                departure = beyond if through[m] else back
+                break
+            rest -= reflected + transmitted
+    return num
+
+
+def steps_of(faces: Faces, code: int, face: NDArray[np.int64], through: NDArray[np.bool_]) -> int:
+    """Read a path's code into the faces that it meets, and how it leaves each; return how many.
+
+    `face` and `through` have room for `LONGEST` meetings.
+    """
+    by = _by_count if isinstance(faces, AnyFaces) else _by_digits
+    return by(faces, code, face, through)  # type: ignore[arg-type]
+
+
+@overload(steps_of, strict=False)
+def _compile_steps(
+    faces: Any, code: Any, face: Any, through: Any  # noqa: ARG001
+) -> Callable[..., int]:  # fmt: skip
+    return _by_count if faces.instance_class is AnyFaces else _by_digits

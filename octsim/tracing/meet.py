@@ -22,7 +22,7 @@ from octsim.optics.turned_cylinder import (
     leave_turned,
     turned_normal,
 )
-from octsim.tracing.faces import AnyFaces, Faces, Kind, Meeting, is_flat
+from octsim.tracing.faces import AnyFaces, Faces, Kind, Meeting, PlainFaces, is_flat
 from octsim.tracing.lanes import VZ, Block, Lanes, direction, position
 
 _OF_CYLINDER = 6
@@ -32,7 +32,7 @@ _CYLINDERS = 3
 
 @register_jitable(forceinline=True)
 def _meet_level(
-    faces: Faces, choice: int, block: Block, n: int, distance: Lanes, cos_i: Lanes
+    faces: PlainFaces, choice: int, block: Block, n: int, distance: Lanes, cos_i: Lanes
 ) -> None:
     f = faces.next_face[choice]
     kind, shape = faces.kind[f], faces.shape[f]
@@ -143,9 +143,7 @@ def _meet_any(
         _meet_turned(faces, choice, block, n, distance, cos_i)
 
 
-def meet(
-    faces: Faces | AnyFaces, choice: int, block: Block, n: int, distance: Lanes, cos_i: Lanes
-) -> None:
+def meet(faces: Faces, choice: int, block: Block, n: int, distance: Lanes, cos_i: Lanes) -> None:
     """Find the distance of n lanes to a choice of next face, and the cosine of incidence there."""
     if isinstance(faces, AnyFaces):
         _meet_any(faces, choice, block, n, distance, cos_i)
@@ -169,7 +167,7 @@ class LevelAxis(NamedTuple):
 
 
 @register_jitable(forceinline=True)
-def _level_axis(faces: Faces, f: int) -> LevelAxis:
+def _level_axis(faces: PlainFaces, f: int) -> LevelAxis:
     return LevelAxis(faces.shape[f][0], faces.shape[f][1])
 
 
@@ -179,7 +177,7 @@ def _any_axis(faces: AnyFaces, f: int) -> Axis:
     return Axis(shape[0], shape[1], shape[3], shape[4], shape[5])
 
 
-def axis_of(faces: Faces | AnyFaces, f: int) -> LevelAxis | Axis:
+def axis_of(faces: Faces, f: int) -> LevelAxis | Axis:
     """Return the axis of a face of a cylinder."""
     return _any_axis(faces, f) if isinstance(faces, AnyFaces) else _level_axis(faces, f)
 
@@ -215,16 +213,16 @@ def _compile_normal(axis: Any, curvature: Any, at: Any) -> Callable[..., Vector]
 
 
 @register_jitable(forceinline=True)
-def _always(faces: Faces, f: int) -> bool:  # noqa: ARG001
+def _always(faces: PlainFaces, f: int) -> bool:  # noqa: ARG001
     return True
 
 
 @register_jitable(forceinline=True)
 def _unless_equal(faces: AnyFaces, f: int) -> bool:
-    return faces.n_i[f] != faces.n_t[f]
+    return bool(faces.n_i[f] != faces.n_t[f])
 
 
-def reflects(faces: Faces | AnyFaces, f: int) -> bool:
+def reflects(faces: Faces, f: int) -> bool:
     """Return whether light that a face reflects is traced: of none, between equal indices, not."""
     return _unless_equal(faces, f) if isinstance(faces, AnyFaces) else True
 

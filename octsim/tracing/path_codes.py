@@ -1,35 +1,34 @@
 """How a tree numbers its light paths, by the kind of scene when code is compiled.
 
 Of the thesis's scene, and of plates, a code has a digit for each meeting, as
-`octsim.tracing.light_paths` says, and grows on the way. Paths of a general scene would not fit: they
-are counted, and their numbers found when light arrives, from the steps that it has made. A step is
-twice the face, plus one if the light goes through.
+`octsim.tracing.light_paths` says, and grows on the way. Paths of a general scene would not fit:
+they are counted, and their numbers found when light arrives, from the steps that it has made. A
+step is twice the face, plus one if the light goes through.
 """
 
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 from numba.extending import overload, register_jitable
 from numpy.typing import NDArray
 
-import numpy as np
-
-from octsim.tracing.faces import AnyFaces, Faces
+from octsim.tracing.faces import AnyFaces, Faces, PlainFaces
 
 Steps = NDArray[np.int64]
 
 
 @register_jitable(forceinline=True)
-def _digits(faces: Faces | AnyFaces, code: int, f: int) -> int:
-    return code * faces.kind.size + 2 * faces.surface[f]
+def _digits(faces: Faces, code: int, f: int) -> int:
+    return int(code * faces.kind.size + 2 * faces.surface[f])
 
 
 @register_jitable(forceinline=True)
 def _step(faces: AnyFaces, code: int, f: int) -> int:
-    return 2 * f if faces.counts.shape[0] > 0 else code * faces.kind.size + 2 * faces.surface[f]
+    return 2 * f if faces.counts.shape[0] > 0 else _digits(faces, code, f)
 
 
-def code_behind(faces: Faces | AnyFaces, code: int, f: int) -> int:
+def code_behind(faces: Faces, code: int, f: int) -> int:
     """Return what a block of light that a face reflects is labelled with; one more beyond it."""
     return _step(faces, code, f) if isinstance(faces, AnyFaces) else _digits(faces, code, f)
 
@@ -40,7 +39,7 @@ def _compile_behind(faces: Any, code: Any, f: Any) -> Callable[..., int]:  # noq
 
 
 @register_jitable(forceinline=True)
-def _no_note(faces: Faces, steps: Steps, meetings: int, code: int) -> None:
+def _no_note(faces: PlainFaces, steps: Steps, meetings: int, code: int) -> None:
     pass
 
 
@@ -50,7 +49,7 @@ def _note(faces: AnyFaces, steps: Steps, meetings: int, code: int) -> None:  # n
         steps[meetings - 1] = code
 
 
-def note_step(faces: Faces | AnyFaces, steps: Steps, meetings: int, code: int) -> None:
+def note_step(faces: Faces, steps: Steps, meetings: int, code: int) -> None:
     """Note the last step of a block that is traced next, after those before it on its way."""
     if isinstance(faces, AnyFaces):
         _note(faces, steps, meetings, code)
@@ -64,7 +63,7 @@ def _compile_note(
 
 
 @register_jitable(forceinline=True)
-def _code_itself(faces: Faces, steps: Steps, meetings: int, code: int) -> int:  # noqa: ARG001
+def _code_itself(faces: PlainFaces, steps: Steps, meetings: int, code: int) -> int:  # noqa: ARG001
     return code
 
 
@@ -85,10 +84,10 @@ def _counted(faces: AnyFaces, steps: Steps, meetings: int, code: int) -> int:
             number += faces.counts[left, faces.after_transmission[f]]
         after = faces.after_transmission if taken % 2 == 1 else faces.after_reflection
         departure = after[taken // 2]
-    return number
+    return int(number)
 
 
-def path_code(faces: Faces | AnyFaces, steps: Steps, meetings: int, code: int) -> int:
+def path_code(faces: Faces, steps: Steps, meetings: int, code: int) -> int:
     """Return the code of the path of a block that arrives, by its steps or its label."""
     if isinstance(faces, AnyFaces):
         return _counted(faces, steps, meetings, code)

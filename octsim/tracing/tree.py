@@ -70,7 +70,7 @@ def check_reach(scene: Scene, detector: Detector, focus: float, max_intersection
             f"focus: {focus} µm given; it must be below the focus distance, "
             f"{detector.focus_distance} µm"
         )
-    if max_intersections > (most := most_meetings(scene)):
+    if max_intersections > (most := most_meetings(scene) - scene.unseen_meetings):
         raise ValueError(
             f"max_intersections: {max_intersections} given; the light paths of so many meetings "
             f"with {len(scene.surfaces)} surfaces can't be numbered, so give {most} or less"
@@ -124,7 +124,7 @@ def arrivals(
     check_reach(scene, detector, focus, max_intersections)
     (ray, path), numbers, segments, outcomes = tree(
         faces_at(scene, wavenumber), beam, detector, within or acceptance(detector), focus,
-        max_intersections, min_amplitude,
+        max_intersections + scene.unseen_meetings, min_amplitude,
     )  # fmt: skip
     length, x, y, vx, vy = numbers[:FIRST_CARRIED]
     carried = numbers[FIRST_CARRIED:]

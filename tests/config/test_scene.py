@@ -1,6 +1,7 @@
 """Scenes: what is refused and warned of, what is told, and which keys are read back."""
 
 import json
+import math
 import warnings
 from math import pi
 from typing import Any
@@ -239,7 +240,7 @@ def test_a_grid_over_a_place_that_a_list_lacks_is_refused() -> None:
     with pytest.raises(ConfigError, match=r"grid\.scene\.cylinders\.1\.x: unknown key"):
         gridded({"scene.cylinders.1.x": ["0 um", "1 um"]}, EXACT)
     with pytest.raises(ConfigError, match=r"scene\.cylinders\.0\.x: 1 um given, but tracing"):
-        gridded({"scene.cylinders.0.x": ["0 um", "1 um"]})
+        gridded({"scene.cylinders.0.x": ["0 um", "1 um"]}, {"tracing": {"scheme": "paths"}})
 
 
 def test_media_of_other_names_are_as_good(recwarn: pytest.WarningsRecorder) -> None:
@@ -248,3 +249,38 @@ def test_media_of_other_names_are_as_good(recwarn: pytest.WarningsRecorder) -> N
     assert not recwarn.list
     warnings.simplefilter("error")
     assert load_config({"scene": {"attenuation": {"neuron": "0 /cm"}}}).swept_index == 1.39
+
+
+@pytest.mark.parametrize(
+    ("scene", "line"),
+    [
+        (
+            {"cylinders": [{"medium": "neuron", "shells": [{"medium": "glass", "thickness": "-5 nm"}]}]},
+            r"scene\.cylinders\.0\.shells\.0\.thickness",
+        ),
+        (
+            {"cylinders": [{"medium": "neuron"}, {"medium": "neuron", "diameter": "1.1 um", "x": "1.5 um"}]},
+            r"scene\.cylinders\.1: overlaps scene\.cylinders\.0",
+        ),
+        (
+            {"layers": ["glass", {"medium": "film", "thickness": "1 um"}, "water"]},
+            r"scene\.layers\.1: film given, which has no refractive index",
+        ),
+        (
+            {"layers": ["water", "water"], "cylinders": [{"medium": "neuron", "elevation": "1 deg"}]},
+            r"scene\.cylinders\.0\.elevation: given, but below it is nothing but water",
+        ),
+    ],
+)  # fmt: skip
+def test_bodies_that_cannot_be_are_refused_in_a_line(scene: dict[str, Any], line: str) -> None:
+    with pytest.raises(ConfigError, match=line):
+        load_config({"scene": scene})
+
+
+@pytest.mark.parametrize("diameter", [0.7, 1.1, 1.3, 1.7])
+def test_bodies_may_touch_whatever_the_rounding_of_their_lengths(diameter: float) -> None:
+    # two of one gap to the plane's height touch where (r1 + r2)² = x² + (r1 - r2)²
+    x = 2 * math.sqrt(1.2 * diameter / 2)
+    beside = {"medium": "neuron", "diameter": f"{diameter!r} um", "x": f"{x!r} um"}
+    between = ["glass", {"medium": "water", "thickness": "2.405 um"}, "glass"]
+    load_config({"scene": {"cylinders": [{"medium": "neuron"}, beside], "layers": between}})

@@ -1,8 +1,7 @@
 """Regions, what they are made of, and the symmetry of a scene."""
 
+import math
 from typing import ClassVar
-
-import pytest
 
 from octsim.optics.materials import Constant
 from octsim.optics.scene import Cylinder, Plane, Region, Scene, Symmetry, neuron_on_glass
@@ -51,11 +50,11 @@ def test_materials_are_taken_at_the_wavenumber() -> None:
         assert faces_at(scene, k).n_t.tolist() == [1.33, 1.52, 1.33, 1.3 + 0.01 * k]
 
 
-def test_a_cylinder_at_an_azimuth_has_no_mirror_plane_and_no_faces_for_rays() -> None:
+def test_a_cylinder_at_an_azimuth_has_no_mirror_plane_and_faces_of_its_axis() -> None:
     indices = GLASS.material, WATER.material, Constant(1.39)
     turned = neuron_on_glass(*indices, 0.0, 1.0, x=0.5, azimuth=0.1)
     assert turned.symmetry == Symmetry(x=False, y=False)
-    with pytest.raises(ValueError, match=r"azimuth of 0\.1 rad has no faces"):
-        faces_at(turned, 8.0)
+    axis = (-math.sin(0.1), math.cos(0.1), 0.0)
+    assert tuple(faces_at(turned, 8.0).shape[2]) == (0.5, 0.5, 0.5, *axis)
     beside = neuron_on_glass(*indices, 0.005, 1.0, x=0.5)
     assert beside.surfaces[1].row == (0.5, 0.505, 0.5)

@@ -162,7 +162,7 @@ def test_a_focus_beyond_the_objective_is_refused() -> None:
 
 
 def test_a_scene_that_is_not_symmetric_in_y_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Cylinder, "symmetry", Symmetry(x=True, y=False))
+    monkeypatch.setattr(Scene, "symmetry", Symmetry(x=True, y=False))
     with pytest.raises(ValueError, match="symmetric in y"):
         integrate(scene_of(CONFIG, 1.4), detector_of(CONFIG), 0.88, BAND, 1e-3)
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import reference
 import xarray as xr
+from gridded import GIVEN, SMALL
 from literal import literal
 from made_runs import WHOLE
 
@@ -43,3 +44,27 @@ def test_the_paths_fields_sum_to_the_spectrum(stages: dict[str, xr.Dataset]) -> 
     middle = float(k[0] + k[-1]) / 2
     expected = spectra["intensity"].interp(wavenumber=middle, method="cubic")
     assert np.allclose(np.abs(fields.sum("path")) ** 2, expected, rtol=1e-3)
+
+
+@pytest.mark.filterwarnings("ignore::octsim.base.errors.OctsimWarning")
+def test_paths_of_a_grid_over_scenes_are_told_apart_by_their_names() -> None:
+    lifted = {"scene.cylinders.0.elevation": ["0 deg", "5 deg"]}
+    config = octsim.load_config(SMALL, GIVEN, {"grid": lifted})
+    detected = octsim.detections(config)
+    paths = octsim.light_paths(config, detected)
+    names = paths["path"].values.tolist()
+    assert len(set(names)) == len(names) == len(set(paths["path_code"].values.tolist()))
+    assert np.allclose(paths["share"].sum("path"), 1, atol=1e-12)
+    level, tilted = (
+        paths["path_rays"].isel(cylinders_0_elevation=one).sum("diameter") for one in (0, 1)
+    )
+    assert (level.sel(path="PT CR PT") > 0) & (tilted.sel(path="PT CR PT") > 0)
+    by_foot = [name for name in names if "foot" in name]
+    assert by_foot
+    assert not level.sel(path=by_foot).any()
+    assert tilted.sel(path=by_foot).any()
+    for elevation, lone in (("0 deg", level), ("5 deg", tilted)):
+        one = {"scene": {"cylinders": [{"medium": "neuron", "elevation": elevation}]}}
+        alone = octsim.load_config(SMALL, GIVEN, one)
+        found = octsim.light_paths(alone, octsim.detections(alone))["path_rays"].sum("diameter")
+        assert lone.sel(path=found["path"]).values.tolist() == found.values.tolist()
