@@ -154,7 +154,7 @@ def explain(error: ErrorDetails) -> str:
             "last sample of each time at rest, counted from 1"
         )
     elif path.startswith("expansion.fit.") and error["type"] == "string_pattern_mismatch":
-        message = "it should be diameter, gap, index, thickness or, of more shells, thickness_2 to 9"
+        message = "it should be diameter, gap, index, thickness or, of a second shell, thickness_2"
     elif path in _FORMS and error["type"] == "model_type":
         message = _FORMS[path]
     elif error["type"] in {"model_type", "model_attributes_type"}:

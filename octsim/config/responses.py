@@ -1,4 +1,4 @@
-"""The section of the config for what else than a diameter may move a phase (`snakemake responses`)."""
+"""The section of the config for what moves a phase besides a diameter (`snakemake responses`)."""
 
 from octsim.config.fields import DiameterRange, Index, PositiveLength, Section, key
 

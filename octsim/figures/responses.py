@@ -27,7 +27,9 @@ def responses_figure(table: xr.Dataset) -> Figure:
 
 def _name(one: xr.Dataset, place: int) -> str:
     unit = str(one["quantity_unit"].values[place])
-    return f"{str(one['quantity'].values[place]).replace('_', ' ')}, a {unit.replace('1e-3', '10⁻³')}"
+    return (
+        f"{str(one['quantity'].values[place]).replace('_', ' ')}, a {unit.replace('1e-3', '10⁻³')}"
+    )
 
 
 def _draw(axes: Axes, one: xr.Dataset, name: str, text: str) -> None:
@@ -50,7 +52,9 @@ def _draw_errors(axes: Axes, one: xr.Dataset) -> None:
     of_shape = one.sel(source="spectrum")
     for place in range(one.sizes["quantity"]):
         for name, line in _ERRORS.items():
-            values = np.where(np.isfinite(of_shape[name][:, place]), of_shape[name][:, place], np.nan)
+            values = np.where(
+                np.isfinite(of_shape[name][:, place]), of_shape[name][:, place], np.nan
+            )
             axes.plot(
                 one["diameter"], values, color=_COLOURS[place % len(_COLOURS)], linestyle=line,
                 label=_name(one, place) if name == "error_together" else None,

@@ -44,7 +44,7 @@ def likeliest_changes(counts: Array, rest: Array, response: Array) -> Changes:
     Examples
     --------
     >>> rest, response = np.array([1.0, 2, 3]), np.array([[1.0, 0, -1]])
-    >>> likeliest_changes(500 * (rest + 0.01 * response)[np.newaxis], rest, response).value.round(6)
+    >>> likeliest_changes(500 * (rest + 0.01 * response), rest, response).value.round(6)
     array([[0.01]])
     """
     columns = np.concatenate([rest[np.newaxis], response])
@@ -61,8 +61,6 @@ def likeliest_changes(counts: Array, rest: Array, response: Array) -> Changes:
     brightness, scaled = found[:, :1] / size[0], found[:, 1:] / size[1:]
     value = scaled / brightness
     # x is a quotient of what is fitted
-    turn = np.concatenate(
-        [-value[..., np.newaxis], np.broadcast_to(np.eye(len(response)), (*value.shape, value.shape[1]))],
-        axis=2,
-    ) / brightness[..., np.newaxis]  # fmt: skip
+    of_each = np.broadcast_to(np.eye(len(response)), (*value.shape, value.shape[1]))
+    turn = np.concatenate([-value[..., np.newaxis], of_each], axis=2) / brightness[..., np.newaxis]
     return Changes(value, turn @ covariance @ np.swapaxes(turn, 1, 2))

@@ -179,7 +179,9 @@ def shifts_at(bench: Bench, diameter: float, focus: float) -> Array:
     middle = float((own.wavenumber[0] + own.wavenumber[-1]) / 2)
 
     def slopes(other: Config, beside: float, above: float) -> Array:
-        pairs = [_pair(bench, other, one, diameter + beside, focus + above) for one in bench.quantities]
+        pairs = [
+            _pair(bench, other, one, diameter + beside, focus + above) for one in bench.quantities
+        ]
         return np.stack([_pair_slope(observer, pair, middle) for pair in pairs], axis=1)
 
     here = slopes(config, 0.0, 0.0)

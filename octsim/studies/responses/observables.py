@@ -89,7 +89,9 @@ def observer_of(config: Config, rest: Array, depth: float) -> Observer:
     k = config.spectrum.wavenumbers()
     parts = []
     for place, (least, most) in enumerate(bands_of(config)):
-        part = (k >= 2 * np.pi / most * (1 - _ROUNDING)) & (k <= 2 * np.pi / least * (1 + _ROUNDING))
+        part = (k >= 2 * np.pi / most * (1 - _ROUNDING)) & (
+            k <= 2 * np.pi / least * (1 + _ROUNDING)
+        )
         if part.sum() < _FEWEST:
             raise ConfigError(
                 f"expansion.bands.{place}: {part.sum()} of spectrum.samples are in it, and "

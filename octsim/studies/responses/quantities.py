@@ -1,5 +1,6 @@
 """What of a neuron may change: by name, and a config in which it has."""
 
+import contextlib
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -98,8 +99,6 @@ def variants_of(config: Config) -> dict[str, Config]:
         nested(f"{config.scene.swept[0]}.shells", [shell]),
         nested(f"scene.refractive_index.{name}", membrane.index),
     )
-    try:
+    with contextlib.suppress(ConfigError):  # of a scheme without shells, or of no room for one
         found[WITH_MEMBRANE] = changed(config, overlay)
-    except ConfigError:  # its scheme has no shells, or the neuron no room for one
-        pass
     return found

@@ -125,7 +125,9 @@ def _filled(rows: Sequence[Array], axes: tuple[int, ...], quantities: int) -> Ar
     """Stack arrays (V, D), NaN for the quantities that a variant does not have, along some axes."""
     found = []
     for one in rows:
-        missing = [(0, quantities - one.shape[axis] if axis in axes else 0) for axis in range(one.ndim)]
+        missing = [
+            (0, quantities - one.shape[axis] if axis in axes else 0) for axis in range(one.ndim)
+        ]
         found.append(np.pad(one, missing, constant_values=np.nan))
     return np.stack(found)
 
