@@ -182,23 +182,32 @@ def test_changes_that_are_fitted_to_noisy_spectra_are_unbiased_and_covered(
     thick: xr.Dataset, bare: Config
 ) -> None:
     """Maxwell's spectra of a neuron whose diameter and gap have changed, not straight ones."""
-    truth = np.array([0.2, 0.1])
     one = thick.sel(variant=CONFIGURED)
     rest, shape = one["intensity"].values, one["intensity_response"].values[:2]
-    spectrum = spectrum_of(bare, DIAMETER + 2e-4, scene={"gap": "5.1 nm"})
-    scale = 1e8 / rest.sum()
-    generator = np.random.default_rng(5)
-    counts = generator.poisson(scale * spectrum, (1000, rest.size)).astype(float)
-    found = likeliest_changes(counts, rest, shape)
-    stated = np.sqrt(np.diagonal(found.covariance, axis1=1, axis2=2))
-    off = found.value - truth
+    scale, generator = 1e8 / rest.sum(), np.random.default_rng(5)
     expected = one["error_with_other"].sel(source="spectrum").values
-    assert stated.mean(axis=0) == pytest.approx([expected[0, 1], expected[1, 0]], rel=0.02)
-    assert off.std(axis=0) == pytest.approx(stated.mean(axis=0), rel=0.07)
-    # bent by less than a fifth of the noise
-    assert (np.abs(off.mean(axis=0)) < 0.2 * stated.mean(axis=0)).all()
-    covered = (np.abs(off) <= stated).mean(axis=0)
-    assert covered == pytest.approx([0.683, 0.683], abs=0.05)
+    bent = []
+    for size in (0.05, 0.1, 0.2):
+        truth = size * np.array([1.0, 0.5])
+        gap = {"gap": f"{0.005 + 5e-4 * size!r} um"}
+        spectrum = scale * spectrum_of(bare, DIAMETER + 1e-3 * size, scene=gap)
+        # without noise: as far as the spectrum bends over the change, which is squared
+        bend = likeliest_changes(spectrum[np.newaxis], rest, shape).value[0] - truth
+        bent.append(np.linalg.norm(bend))
+        counts = generator.poisson(spectrum, (1000, rest.size)).astype(float)
+        found = likeliest_changes(counts, rest, shape)
+        stated = np.sqrt(np.diagonal(found.covariance, axis1=1, axis2=2))
+        off = found.value - truth
+        assert stated.mean(axis=0) == pytest.approx([expected[0, 1], expected[1, 0]], rel=0.02)
+        assert off.std(axis=0) == pytest.approx(stated.mean(axis=0), rel=0.07)
+        noise = stated.mean(axis=0) / np.sqrt(1000)
+        assert (np.abs(off.mean(axis=0) - bend) < 4 * noise).all()
+        if size < 0.1:
+            assert (np.abs(off.mean(axis=0)) < 4 * noise).all()
+        covered = (np.abs(off) <= stated).mean(axis=0)
+        assert covered == pytest.approx([0.683, 0.683], abs=0.05)
+    assert bent[1] / bent[0] == pytest.approx(4, rel=0.1)
+    assert bent[2] / bent[1] == pytest.approx(4, rel=0.1)
 
 
 def test_the_noise_of_phases_is_that_of_other_draws(thick: xr.Dataset, bare: Config) -> None:

@@ -157,7 +157,7 @@ def test_responses_that_are_too_alike_are_named_with_their_remedy() -> None:
          "expansion.fit: 2 quantities given, but phases in 1 bands can't tell them apart; give 2"),
         ({"fit": ["diameter", "gap"]}, "expansion.fit: 2 quantities given, but phases in 0 bands"),
         ({"fit": ["gap"]}, "expansion.fit: ['gap'] given; it should have diameter"),
-        ({"fit": ["diameter", "gapp"]}, "expansion.fit.1: 'gapp' given; it should be diameter, gap"),
+        ({"fit": ["diameter", "gapp"]}, "expansion.fit.1: 'gapp' given; it should be diameter,"),
         ({"fit": ["diameter", "thickness"], "bands": BANDS},
          "expansion.fit: thickness given, but the neuron has 0 shells"),
         ({"bands": [["600 nm", "760 nm"]]}, "expansion.bands.0: 0.6 um to 0.76 um given, which is"),
