@@ -267,6 +267,9 @@ interpolation and of the finite differences; shifts are added as they are
 
 {budget}
 On average most is by {most_shares}.
+Any number of the scene can have a tolerance, by its dotted key, as
+`scene.cylinders.1.x: 50 nm` or `scene.refractive_index.myelin: 0.005`; what it is of is then a line
+of the budget by that name.
 The table takes it that the focus is looked for on the neuron itself and found within the tolerance;
 a diameter at rest that is misjudged then moves the focus with it. By waves the total intensity
 mostly has no peak at the law's focus; what has is in [design.md](design.md). A neuron off the axis
