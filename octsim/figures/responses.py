@@ -6,6 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from octsim.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, label, title
+from octsim.studies.responses.quantities import WITH_MEMBRANE
 
 _COLOURS = (BLUE, ORANGE, GREEN, VERMILION, PURPLE, SKY, BLACK)
 _MARKERS = "osv^DPX"
@@ -21,7 +22,9 @@ def responses_figure(table: xr.Dataset) -> Figure:
     _draw(moved, one, "phase_response", "Change of the phase (mrad)")
     _draw(apparent, one, "apparent_expansion", "Apparent expansion (nm)")
     _draw_errors(errors, one)
-    figure.suptitle(title(table, "What else than the diameter moves the phase"), fontsize=11)
+    scene = " of a neuron with a membrane" if one["variant"].item() == WITH_MEMBRANE else ""
+    text = f"What else than the diameter moves the phase{scene}"
+    figure.suptitle(title(table, text), fontsize=11)
     return figure
 
 

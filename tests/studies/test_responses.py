@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from octsim.config.derive import changed
 from octsim.config.load import load_config
 from octsim.config.models import Config
+from octsim.config.units import format_length
 from octsim.datasets.files import read, write
 from octsim.figures.responses import responses_figure
 from octsim.figures.style import look, save
@@ -21,8 +22,11 @@ from octsim.phase.cramer_rao import diameter_bound
 from octsim.phase.derivatives import wrapped
 from octsim.phase.estimators.changes import likeliest_changes
 from octsim.phase.estimators.series import series_phases
+from octsim.phase.measured_series import Series
+from octsim.studies.calibration.expansion_fit import series_fit
 from octsim.studies.calibration.scheme import converged
 from octsim.studies.calibration.study import calibrating
+from octsim.studies.responses.observables import bands_of, observer_of
 from octsim.studies.responses.quantities import (
     CONFIGURED,
     WITH_MEMBRANE,
@@ -263,9 +267,33 @@ def test_responses_are_of_the_expansions_diameter_too() -> None:
 
 def test_what_responses_say_and_draw(table: xr.Dataset, tmp_path: Path) -> None:
     said = summary(table)
-    assert said.startswith("at 1.4 um, focus held, the phase moves by diameter +2")
+    assert said.startswith("at 1.4 um, with a membrane, focus held, the phase moves by diameter +2")
     assert "mrad/1e-3" in said
     assert not doubts(table)
     with look():
         save(responses_figure(table), tmp_path / "responses.png")
     assert (tmp_path / "responses.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("size", [0.2, 0.05])
+def test_phases_of_bands_come_back_to_what_changed(
+    table: xr.Dataset, bare: Config, size: float
+) -> None:
+    """Maxwell's spectra of a neuron that swells and lifts off, without noise."""
+    halves = bands_of(bare)
+    bands = [[format_length(edge) for edge in band] for band in halves]
+    config = load_config(FEW, {"expansion": {"fit": ["diameter", "gap"], "bands": bands}})
+    gap = {"gap": f"{0.005 + 5e-4 * size!r} um"}
+    rest, moved = spectrum_of(bare), spectrum_of(bare, DIAMETER + 1e-3 * size, scene=gap)
+    observer = observer_of(bare, rest, bare.swept_group_index * DIAMETER)
+    before, after = observer.phases(np.stack([rest, moved]))[:, 1:3]
+    count = 20
+    steps = np.concatenate([np.zeros((count, 2)), np.broadcast_to(after - before, (2, 2))])
+    error = np.full(count + 2, 1e-6)
+    series = [Series(np.arange(count + 2.0), steps[:, band], error) for band in range(2)]
+    found = series_fit(config, series, table)
+    # as far as responses are straight
+    truth = size * np.array([1.0, 0.5])
+    assert found["change"].values[-1] == pytest.approx(truth, abs=0.5 * size**2)
+    assert (found["change"].values[:count] == 0).all()
+    assert np.isfinite(found["change_systematic_error"]).all()

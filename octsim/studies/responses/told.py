@@ -9,6 +9,7 @@ from octsim.datasets.versions import recorded_config
 from octsim.schemes.light import AccuracyStatus
 from octsim.studies.calibration.scheme import ModelStatus, rays_because
 from octsim.studies.responses.observables import WHOLE
+from octsim.studies.responses.quantities import WITH_MEMBRANE
 from octsim.studies.responses.separability import Separability
 from octsim.studies.responses.sources import SPECTRUM
 
@@ -39,8 +40,10 @@ def summary(table: xr.Dataset) -> str:
     ]  # fmt: skip
     together = one["separability"].sel(source=SPECTRUM) == Separability.SEPARABLE
     every = "all together too" if bool(together.all()) else "not all together"
+    scene = ", with a membrane" if one["variant"].item() == WITH_MEMBRANE else ""
     return (
-        f"at {float(one['diameter']):.4g} um, focus held, the phase moves by {moved}; the shape of "
+        f"at {float(one['diameter']):.4g} um{scene}, focus held, the phase moves by {moved}; the "
+        "shape of "
         f"a spectrum tells the diameter from each of {', '.join(told) or 'no other'}, {every}"
     )
 
