@@ -292,6 +292,10 @@ outside the table, steps too large to unwrap, too few samples at rest, times tha
 `statistical_error` is that of the phase, `systematic_error` that of the slope: the latter is the
 same fraction of every sample, so no average makes it smaller.
 
+A gap, an index or a membrane that changes moves the phase as an expansion does: by how much, and
+how phases in several bands (`expansion.fit`, `expansion.bands`) tell them apart, is in
+[responses.md](responses.md).
+
 **How files are read**, those of spectra too: commas, semicolons or tabs stand between cells, points
 before decimals, and every row has as many cells as there are headings. Text is UTF-8, quotes end on
 their line, and # begins a note only where a line begins; the heading may be one of the notes above

@@ -128,18 +128,8 @@ def expansion(
     return Expansion(change, np.broadcast_to(statistical, change.shape), systematic)
 
 
-def series_of(config: Config) -> Series:
-    """Return the series that a config names.
-
-    Raises
-    ------
-    OctsimError
-        If it names none, or one that can't be read.
-    """
-    return read_series(_file_of(config))
-
-
 def _file_of(config: Config) -> str:
+    """Return the file of the series that a config names; refuse a config that names none."""
     if config.expansion.series is None:
         raise ConfigError(
             "expansion.series: not given; name the CSV or netCDF file that holds time and phase"
@@ -160,13 +150,14 @@ def expansion_of_series(
     OctsimError
         If there is no such series, or the series or the diameter does not serve.
     """
+    file = _file_of(config)  # without one nothing else is there
     if config.expansion.several and responses is not None:
-        series = read_series_of_bands(_file_of(config), len(config.expansion.bands))
+        series = read_series_of_bands(file, len(config.expansion.bands))
         return series_fit(config, series, responses)
     if calibration is None or config.expansion.several:
         lacking = "responses" if config.expansion.several else "calibration"
         raise OctsimError(f"{lacking}: not given; expansion.fit and bands ask for it")
-    return series_expansion(config, series_of(config), calibration)
+    return series_expansion(config, read_series(file), calibration)
 
 
 def series_expansion(config: Config, series: Series, calibration: xr.Dataset) -> xr.Dataset:
