@@ -166,9 +166,7 @@ def _rising(value: tuple[float, float]) -> tuple[float, float]:
     return value
 
 
-Band = Annotated[
-    tuple[Wavelength, Wavelength], BeforeValidator(as_tuple), AfterValidator(_rising)
-]
+Band = Annotated[tuple[Wavelength, Wavelength], BeforeValidator(as_tuple), AfterValidator(_rising)]
 """A band of wavelengths in vacuum, from the shortest to the longest."""
 DIAMETER = "diameter"
 Fitted = Annotated[str, Field(pattern=r"^(diameter|gap|index|thickness|thickness_[2-9])$")]
