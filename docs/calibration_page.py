@@ -8,7 +8,7 @@ from markdown import table
 
 from octsim.config.models import Config
 from octsim.studies.calibration.expansion import LARGEST, expansion, sensitivity_at
-from octsim.studies.calibration.parameters import PARAMETERS
+from octsim.studies.calibration.parameters import parameter_named
 from octsim.studies.calibration.round_trips import REST, TRIALS
 from octsim.studies.calibration.scheme import ACCURACY
 from octsim.studies.calibration.study import RAYS
@@ -73,7 +73,7 @@ def budget(found: xr.Dataset, config: Config) -> str:
     ends = (SHOWN[0], EXAMPLE[1], SHOWN[-1])
     rows = []
     for name in found["parameter"].values.tolist():
-        tolerance, unit = getattr(config.calibration.tolerances, name), PARAMETERS[name].unit
+        tolerance, unit = config.calibration.tolerances.of[name], parameter_named(name).unit
         sensitivity = [
             float(found[f"{name}_sensitivity"].sel(diameter=d, method="nearest")) for d in ends
         ]
@@ -267,6 +267,9 @@ interpolation and of the finite differences; shifts are added as they are
 
 {budget}
 On average most is by {most_shares}.
+Any number of the scene can have a tolerance, by its dotted key, as
+`scene.cylinders.1.x: 50 nm` or `scene.refractive_index.myelin: 0.005`; what it is of is then a line
+of the budget by that name.
 The table takes it that the focus is looked for on the neuron itself and found within the tolerance;
 a diameter at rest that is misjudged then moves the focus with it. By waves the total intensity
 mostly has no peak at the law's focus; what has is in [design.md](design.md). A neuron off the axis
@@ -288,6 +291,10 @@ refused in a line that names the row of the file or the sample, both counted fro
 outside the table, steps too large to unwrap, too few samples at rest, times that do not increase.
 `statistical_error` is that of the phase, `systematic_error` that of the slope: the latter is the
 same fraction of every sample, so no average makes it smaller.
+
+A gap, an index or a membrane that changes moves the phase as an expansion does: by how much, and
+how phases in several bands (`expansion.fit`, `expansion.bands`) tell them apart, is in
+[responses.md](responses.md).
 
 **How files are read**, those of spectra too: commas, semicolons or tabs stand between cells, points
 before decimals, and every row has as many cells as there are headings. Text is UTF-8, quotes end on

@@ -20,6 +20,7 @@ from interferometers_page import interferometers_page
 from markdown import table
 from maxwell_part import claim
 from pydantic import BaseModel
+from responses_page import responses_page
 from spike_page import spike_page
 from validity_page import validity_page
 
@@ -417,6 +418,7 @@ if __name__ == "__main__":
         ),
         "detector": lambda: detector_page(xr.load_dataset(RESULTS / "detector.nc")),
         "effects": lambda: effects_page(xr.load_dataset(RESULTS / "effects.nc")),
+        "responses": lambda: responses_page(xr.load_dataset(RESULTS / "responses.nc")),
         "design": lambda: design_page(xr.load_dataset(RESULTS / "design.nc")),
     }
     for name, page in pages.items():
@@ -424,7 +426,7 @@ if __name__ == "__main__":
     drawn = (
         "figure_12", "stability", "tradeoff", "truth", "causes", "spike", "estimators",
         "calibration", "action_potential", "detector", "effects", "design", "validity",
-        "diffraction", "michelson", "plates",
+        "diffraction", "michelson", "plates", "responses",
     )  # fmt: skip
     for figure in drawn:
         shutil.copy(RESULTS / "figures" / f"{figure}.png", DOCS / "figures" / f"{figure}.png")

@@ -80,7 +80,7 @@ def condition(dataset: xr.Dataset, stage: str, config: Config) -> Condition:
     """Return what a dataset's numbers hang on."""
     if stage == "gaussian_fits":
         return Condition(np.nan, _unsolved(dataset, config))
-    if stage in ("calibration", "expansion"):
+    if stage in ("calibration", "responses", "expansion"):
         return Condition(config.calibration.step, {})
     if "diameter" not in dataset.coords or dataset["diameter"].shape[-1:] in ((), (1,)):
         return Condition(np.nan, {})

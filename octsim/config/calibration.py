@@ -1,8 +1,10 @@
 """Sections of the config for the way from a phase to nanometres, and its worked example."""
 
-from typing import Annotated, Literal
+import math
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Discriminator, Field, Tag
 
 from octsim.config.fields import (
     Number,
@@ -11,17 +13,56 @@ from octsim.config.fields import (
     Section,
     TableRange,
     Tolerance,
+    Wavelength,
     absent,
     as_tuple,
     key,
+    number,
 )
 from octsim.config.processing import PhaseEstimator
-from octsim.config.units import Angle, Length
+from octsim.config.units import ANGLE, ATTENUATION, LENGTH, Angle, Length, parse
 from octsim.schemes.table import FULL_WAVE, LIGHT_PATHS
 
 
+def _tolerance(value: object) -> object:
+    """Return a tolerance of some kind in the unit that it is kept in; of an index the number."""
+    value = number(value)
+    if isinstance(value, bool) or not isinstance(value, str | int | float):
+        raise ValueError(_KINDS)  # noqa: TRY004
+    if not isinstance(value, str):
+        if not (math.isfinite(value) and 0 <= value <= 1):
+            raise ValueError("it should be from 0 to 1")
+        return float(value)
+    for quantity in (LENGTH, ANGLE, ATTENUATION):
+        try:
+            size = parse(quantity, value)
+        except ValueError:
+            continue
+        if not 0 <= size <= 1e6:
+            raise ValueError(f"it should be from 0 to 1000000 {quantity.unit}")
+        return f"{size!r} {quantity.unit}"
+    raise ValueError(_KINDS)
+
+
+_KINDS = (
+    "it should be a length or an angle with its unit, such as 50 nm or 1 deg, or of an index a "
+    "plain number"
+)
+_OF_SCENE = r"^scene\."
+"""Dotted keys of the scene, which octsim.config.scene_keys looks for in it."""
+
+
 class Tolerances(Section):
-    """How well the instrument and the neuron are known: one standard deviation of each."""
+    """How well the instrument and the neuron are known: one standard deviation of each.
+
+    Any number of the scene can have one, by its dotted key.
+    """
+
+    model_config = ConfigDict(extra="allow")
+    __pydantic_extra__: dict[
+        Annotated[str, Field(pattern=_OF_SCENE)],
+        Annotated[float | str, BeforeValidator(_tolerance, json_schema_input_type=float | str)],
+    ]
 
     diameter: Tolerance = key("20 nm", "of the neuron at rest; its focus is found with it")
     gap: Tolerance = key("2 nm", "between the glass and the neuron")
@@ -44,6 +85,20 @@ class Tolerances(Section):
     offset: Tolerance = key("50 nm", "of the neuron, across it, from the axis; by scheme fullwave")
     wavelength_min: Tolerance = key("0.1 nm", "of the spectrometer, at the shortest")
     wavelength_max: Tolerance = key("0.1 nm", "of the spectrometer, at the longest")
+
+    @property
+    def of_scene(self) -> Mapping[str, float | str]:
+        """Those of the scene's numbers by their dotted keys, as they are kept."""
+        return self.model_extra or {}
+
+    @property
+    def of(self) -> Mapping[str, float]:
+        """Each by its name, or its dotted key: µm, rad, 1/µm or a number."""
+        given: dict[str, Any] = dict(self)
+        return {
+            name: float(value.split()[0]) if isinstance(value, str) else value
+            for name, value in given.items()
+        }
 
 
 class Calibration(Section):
@@ -105,6 +160,25 @@ def _none(value: object) -> object:
     return "none" if value is None else value
 
 
+def _rising(value: tuple[float, float]) -> tuple[float, float]:
+    if not value[0] < value[1]:
+        raise ValueError("the first wavelength should be below the second")
+    return value
+
+
+Band = Annotated[tuple[Wavelength, Wavelength], BeforeValidator(as_tuple), AfterValidator(_rising)]
+"""A band of wavelengths in vacuum, from the shortest to the longest."""
+DIAMETER = "diameter"
+Fitted = Annotated[str, Field(pattern=r"^(diameter|gap|index|thickness|thickness_[2-9])$")]
+"""A quantity of the neuron that may change: `octsim.studies.responses.quantities`."""
+
+
+def _with_diameter(value: tuple[str, ...]) -> tuple[str, ...]:
+    if DIAMETER not in value or len(set(value)) < len(value):
+        raise ValueError("it should have diameter, and whatever else once")
+    return value
+
+
 class ExpansionConfig(Section):
     """A measured series of phases, for `snakemake expansion`."""
 
@@ -128,6 +202,24 @@ class ExpansionConfig(Section):
         "what is subtracted: the mean at rest, the line through the samples at rest, or that "
         "through more of them, {reference: [[first, last], ...]}, counted from 1",
     )
+
+    fit: Annotated[
+        tuple[Fitted, ...], BeforeValidator(as_tuple), AfterValidator(_with_diameter)
+    ] = key(
+        [DIAMETER],
+        "what changes: diameter, and maybe gap, index (of the neuron) and thickness (of its shell; "
+        "thickness_2 of the second one); more than the diameter needs a phase in several bands",
+    )
+    bands: Annotated[tuple[Band, ...], BeforeValidator(as_tuple)] = key(
+        [],
+        "[shortest, longest] wavelength of each band that the series has a phase of, as phase_1, "
+        "phase_2, ...; without any it has one phase, of the spectrum's band",
+    )
+
+    @property
+    def several(self) -> bool:
+        """Whether it is by responses: of phases in bands, or of more than the diameter."""
+        return bool(self.bands) or self.fit != (DIAMETER,)
 
     @property
     def references(self) -> tuple[tuple[int, int], ...]:

@@ -13,6 +13,7 @@ from octsim.config.derive import merge, overlaid, validated
 from octsim.config.grid import remarks
 from octsim.config.grid_values import expanded
 from octsim.config.models import Config
+from octsim.config.study_checks import wrong_for_studies
 from octsim.config.unread import asked_for, unread, unread_scene
 
 
@@ -112,4 +113,7 @@ def load_and_tell(*overlays: str | Path | Mapping[str, Any]) -> tuple[Config, li
         config = expanded(config)
     else:
         require_possible(config)
+    # here alone: studies of other scenes leave out what these do not have
+    if wrong := list(wrong_for_studies(config)):
+        raise ConfigError("\n".join(wrong))
     return config, [*remarks(config), *unread(config, asked), *unread_scene(config, asked)]

@@ -9,6 +9,7 @@ from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
 from octsim.config.archive import Creator
+from octsim.config.calibration import Tolerances
 from octsim.config.dispersion import TAGS
 from octsim.config.effects import (
     FOCAL_SHIFT_FORM,
@@ -125,6 +126,13 @@ def explain(error: ErrorDetails) -> str:
         return f"{path}: unknown key; the nearest that a dispersion has is {nearest}"
     if error["type"] == "extra_forbidden":
         return f"{path}: unknown key; the nearest known one is {nearest_key(entry)}"
+    of_tolerance = place[:2] == ["calibration", "tolerances"] and len(place) == 3
+    if of_tolerance and not (place[2] in Tolerances.model_fields or place[2].startswith("scene.")):
+        # whatever else is wrong with it, its value too
+        remedy = f"the nearest known one is {nearest_key(entry)}"
+        if path == "calibration.tolerances.scene":
+            remedy = "keys of the scene don't nest here, so write scene.cylinders.0.x: 50 nm"
+        return f"{path}: unknown key; {remedy}"
     if error["type"] == "missing":
         return f"{path}: missing; it has no default, so give it a value"
     message = error["msg"].removeprefix("Value error, ").replace("Input should", "it should")
@@ -145,6 +153,8 @@ def explain(error: ErrorDetails) -> str:
             "it should be 'none', 'linear' or {reference: [[first, last], ...]}, the first and the "
             "last sample of each time at rest, counted from 1"
         )
+    elif path.startswith("expansion.fit.") and error["type"] == "string_pattern_mismatch":
+        message = "it should be diameter, gap, index, thickness or, of a second shell, thickness_2"
     elif path in _FORMS and error["type"] == "model_type":
         message = _FORMS[path]
     elif error["type"] in {"model_type", "model_attributes_type"}:

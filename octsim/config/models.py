@@ -30,6 +30,7 @@ from octsim.config.light import Objective as Objective
 from octsim.config.processing import Processing as Processing
 from octsim.config.resources import Budget, Scatter
 from octsim.config.resources import Cache as Cache
+from octsim.config.responses import Responses
 from octsim.config.scene import RefractiveIndex as RefractiveIndex
 from octsim.config.scene import SceneConfig as SceneConfig
 from octsim.optics.band import wavenumbers
@@ -194,8 +195,8 @@ _NO_RESULT = ("archive", "cache", "scatter")
 
 
 FIXED = (
-    "run", "calibration", "expansion", "action_potential", "design", "grid", "archive", "cache",
-    "budget", "scatter",
+    "run", "calibration", "expansion", "action_potential", "responses", "design", "grid", "archive",
+    "cache", "budget", "scatter",
 )  # fmt: skip
 """Sections that a run has once: what no stage over the grid depends on."""
 
@@ -221,6 +222,7 @@ class Config(Section):
     calibration: Calibration = Calibration()
     expansion: ExpansionConfig = ExpansionConfig()
     action_potential: ActionPotential = ActionPotential()
+    responses: Responses = Responses()
     design: Design = Design()
     grid: Annotated[Grid, BeforeValidator(lambda given: {} if given is None else given)] = Grid()
     archive: ArchiveConfig = ArchiveConfig()

@@ -28,6 +28,8 @@ def dimension_name(key: str) -> str:
     parts = key.split(".")
     if any(map(str.isdigit, parts)):  # in a list, whose other entries have the same keys
         return "_".join(parts[1:])
+    if parts[0] in FIXED:  # of which a run has one, and no dimension
+        return "_".join(parts)
     known = [
         parts
         for parts in (k.split(".") for k in known_keys())

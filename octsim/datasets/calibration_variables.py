@@ -61,3 +61,30 @@ CALIBRATION: Mapping[str, tuple[str, str]] = {
     "coverage_instrument": ("1", "the same without noise, by the systematic error"),
 }
 """Of the calibration, expansions by it, and its worked example."""
+
+_BY_LENGTH, _BY_ANGLE = ("gap", "x", "diameter", "thickness"), ("azimuth", "elevation")
+
+
+def scene_sensitivity(name: str) -> tuple[str, str]:
+    """Return unit and meaning of the sensitivity to a number of the scene.
+
+    Parameters
+    ----------
+    name : str
+        ``<key>_sensitivity``, the key's dots as underscores.
+
+    Raises
+    ------
+    KeyError
+        If it is of no such variable.
+    """
+    key = name.removesuffix("_sensitivity")
+    if key == name or not key.startswith("scene_"):
+        raise KeyError(name)
+    by_index, last = key.startswith("scene_refractive_index_"), key.rpartition("_")[2]
+    units = "mrad um/nm"  # an attenuation
+    if by_index or last in _BY_ANGLE:
+        units = "mrad/nm"
+    elif last in _BY_LENGTH:
+        units = "mrad/nm2"
+    return units, f"change of the phase slope with {key.replace('_', ' ')}"

@@ -208,9 +208,23 @@ _BESIDE = (
         ),
     ),
     Stage(
+        "responses", "octsim.studies.responses.study:responses",
+        "Differentiate phases and spectra by all that may change in a neuron",
+        reads=(*_CALIBRATED, "responses", "expansion.diameter", "expansion.bands",
+               "action_potential.photons", "action_potential.seed"),
+        after=("focus_law",), beside=True,
+        summary="octsim.studies.responses.told:summary",
+        doubts="octsim.studies.responses.told:doubts",
+        figures=(
+            Figure("responses", "octsim.figures.responses:responses_figure",
+                   "phase responses to all that may change, and what tells them apart"),
+        ),
+    ),
+    Stage(
         "expansion", "octsim.studies.calibration.expansion:expansion_of_series",
         "Turn a measured series of phases into nanometres",
-        reads=("expansion",), after=("calibration",), beside=True,
+        # a calibration, or responses where more than the diameter is fitted
+        reads=("expansion",), after=("calibration", "responses"), beside=True,
         summary="octsim.studies.calibration.expansion:summary",
         doubts="octsim.studies.calibration.expansion:doubts",
         figures=(

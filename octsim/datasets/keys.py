@@ -91,12 +91,13 @@ def _exists(stage: str, config: Config) -> bool:
 def inputs_of(stage: Stage, config: Config) -> tuple[str, ...]:
     """Return the datasets that a stage is made from, under a config.
 
-    A given focus needs no law, and what is traced at it does not change with the law.
+    A given focus needs no law, and what is traced at it does not change with the law. An expansion
+    is by a calibration, or by responses where more is fitted.
     """
-    return tuple(
-        name for name in stage.after
-        if _exists(name, config) and (name != "focus_law" or needs_law(config))
-    )  # fmt: skip
+    left = set() if needs_law(config) else {"focus_law"}
+    if stage.name == "expansion":
+        left.add("calibration" if config.expansion.several else "responses")
+    return tuple(name for name in stage.after if _exists(name, config) and name not in left)
 
 
 def differing(stage: str, config: Config, other: Mapping[str, object]) -> list[str]:

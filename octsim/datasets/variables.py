@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping
 
-from octsim.datasets.calibration_variables import CALIBRATION
+from octsim.datasets.calibration_variables import CALIBRATION, scene_sensitivity
 from octsim.datasets.design_variables import DESIGN
 from octsim.datasets.detector_variables import DETECTOR
 from octsim.datasets.effects_variables import EFFECTS
 from octsim.datasets.scenes_variables import SCENES
+from octsim.datasets.responses_variables import RESPONSES
 from octsim.datasets.thesis_variables import DIFFRACTION, INTERFEROMETERS
 from octsim.datasets.validity_variables import VALIDITY
 
@@ -250,6 +251,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     **DETECTOR,
     **EFFECTS,
     **SCENES,
+    **RESPONSES,
     **VALIDITY,
     **DIFFRACTION,
     **INTERFEROMETERS,
@@ -262,5 +264,5 @@ def meaning(name: str) -> dict[str, str]:
     if name.endswith(_STANDARD_ERROR):
         units, long_name = MEANINGS[name.removesuffix(_STANDARD_ERROR)]
         return {"units": units, "long_name": f"standard error of the {long_name}"}
-    units, long_name = MEANINGS[name]
+    units, long_name = MEANINGS.get(name) or scene_sensitivity(name)
     return {"units": units, "long_name": long_name}

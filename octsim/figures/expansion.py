@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from octsim.figures.envelope import band, extremes
 from octsim.figures.style import BLUE, ORANGE, SKY, title
 from octsim.phase.rest_error import ErrorStatus
+from octsim.studies.responses.separability import Separability
 
 TIME_UNIT = 1e3  # ms for each s
 FROM = {
@@ -46,6 +47,8 @@ def draw_expansion(axes: Axes, found: xr.Dataset) -> None:
 
 def expansion_figure(found: xr.Dataset) -> Figure:
     """Draw the expansion that a measured series comes to."""
+    if "quantity" in found.dims:
+        return _fit_figure(found)
     figure = Figure()
     axes = figure.subplots()
     draw_expansion(axes, found)
@@ -66,4 +69,23 @@ def expansion_figure(found: xr.Dataset) -> Figure:
         title(found, f"Change of a diameter of {float(found['diameter']):.4g} µm"), fontsize=11
     )
     axes.legend()
+    return figure
+
+
+def _fit_figure(found: xr.Dataset) -> Figure:
+    """Draw all that has changed by phases in several bands."""
+    count = found.sizes["quantity"]
+    figure = Figure(figsize=(6 * count, 4.4))
+    for number, axes in enumerate(np.atleast_1d(figure.subplots(1, count))):
+        one = found.isel(quantity=number)
+        name, unit = str(one["quantity"].item()), str(one["quantity_unit"].item())
+        kinds = ("statistical_error", "systematic_error")
+        errors = {kind: one[f"change_{kind}"] for kind in kinds}
+        draw_expansion(axes, one.assign({"expansion": one["change"], **errors}))
+        status = Separability(int(one["separability"]))
+        if status != Separability.SEPARABLE:
+            axes.plot([], [], " ", label=status.name.lower().replace("_", " "))
+        axes.set_ylabel(f"Change of the {name.replace('_', ' ')} ({unit.replace('1e-3', '10⁻³')})")
+        axes.legend()
+    figure.suptitle(title(found, f"A neuron of {float(found['diameter']):.4g} µm"), fontsize=11)
     return figure

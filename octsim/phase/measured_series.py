@@ -60,27 +60,46 @@ def read_series(path: str | Path) -> Series:
         If the file is missing, can't be read, or does not hold a series; with the row of the file
         or the sample, both counted from 1.
     """
-    path = Path(path)
+    return read_as(Path(path), list, lambda _: None)
+
+
+Renamed = Callable[[Sequence[str]], list[str]]
+"""Takes headings, and returns what they are read as."""
+
+
+def read_as(path: Path, renamed: Renamed, wrong: Callable[[Sequence[str]], str | None]) -> Series:
+    """Read a series as `read_series` does, of headings that stand for others.
+
+    Parameters
+    ----------
+    path : Path
+    renamed : callable
+        Returns what headings are read as.
+    wrong : callable
+        Returns what is wrong with headings as they are, if something is.
+    """
+
+    def problem_of(headings: Sequence[str], form: str = FORM) -> str | None:
+        return wrong(headings) or problem(renamed(headings), NEEDED, OPTIONAL, form)
+
     try:
-        return _of_netcdf(path) if is_netcdf(path) else _of_csv(path)
+        if is_netcdf(path):
+            return _of_netcdf(path, renamed, problem_of)
+        return _of_csv(path, renamed, problem_of)
     except FileError as error:
         raise DatasetError(str(error)) from None
 
 
-def _problem(headings: Sequence[str], form: str = FORM) -> str | None:
-    return problem(headings, NEEDED, OPTIONAL, form)
-
-
-def _of_csv(path: Path) -> Series:
-    table = read_table(path, _problem)
+def _of_csv(path: Path, renamed: Renamed, problem_of: Callable[..., str | None]) -> Series:
+    table = read_table(path, problem_of)
     columns = {
         name: (numbers(table, place, name), factor(heading))
-        for name, (place, heading) in places(table.headings, NEEDED + OPTIONAL).items()
+        for name, (place, heading) in places(renamed(table.headings), NEEDED + OPTIONAL).items()
     }
     return _series(columns, lambda sample: f"{path}, row {table.rows[sample]}", str(path))
 
 
-def _of_netcdf(path: Path) -> Series:
+def _of_netcdf(path: Path, renamed: Renamed, problem_of: Callable[..., str | None]) -> Series:
     stored = read_variables(path)
     names = list(map(str, stored.variables))
     units = [stored[name].attrs.get("units") for name in names]
@@ -88,9 +107,9 @@ def _of_netcdf(path: Path) -> Series:
         name if unit is None else f"{name} ({unit})"
         for name, unit in zip(names, units, strict=True)
     ]
-    if what := _problem(headings, "as the name of a variable of numbers"):
+    if what := problem_of(headings, "as the name of a variable of numbers"):
         raise DatasetError(f"{path}: {what}")
-    found = places(headings, NEEDED + OPTIONAL)
+    found = places(renamed(headings), NEEDED + OPTIONAL)
     dimensions = {name: stored[names[place]].dims for name, (place, _) in found.items()}
     if len(set(dimensions.values())) > 1 or len(dimensions["phase"]) != 1:
         said = ", ".join(f"{name} ({', '.join(map(str, of))})" for name, of in dimensions.items())

@@ -8,6 +8,7 @@ from gridded import gridded
 from octsim.config.derive import parts_of
 from octsim.config.load import load_config
 from octsim.config.models import Config
+from octsim.datasets.catalog import CATALOG
 from octsim.datasets.gallery import figures_of
 from octsim.datasets.keys import inputs_of, jobs_of, keys_read, stage_axes, stages_of
 from octsim.datasets.stage import Stage
@@ -62,3 +63,12 @@ def test_an_edit_makes_anew_only_what_follows_from_the_key(key: str) -> None:
         edited = merged(plain, edit_of(key))
         assert made_anew(load_config(plain), load_config(edited)) == expected
     assert expected <= EVERYTHING
+
+
+def test_an_expansion_is_by_a_calibration_or_where_more_is_fitted_by_responses() -> None:
+    bands = [["650 nm", "760 nm"], ["760 nm", "900 nm"]]
+    more = load_config({"expansion": {"fit": ["diameter", "gap"], "bands": bands}})
+    one = load_config({"expansion": {"bands": bands}})
+    row = CATALOG["expansion"]
+    assert inputs_of(row, Config()) == ("calibration",)
+    assert inputs_of(row, more) == inputs_of(row, one) == ("responses",)

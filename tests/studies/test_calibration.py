@@ -128,6 +128,35 @@ def test_the_standard_error_is_the_budgets_quadrature(monkeypatch: pytest.Monkey
     assert whole == pytest.approx(np.hypot(error, 0.02 * 2 * BEND), rel=1e-6)
 
 
+def test_a_number_of_the_scene_is_part_of_the_budget_by_its_dotted_key(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    class Turned(Plates):
+        """Plates whose phase moves with the square of the diameter times the azimuth."""
+
+        def spectrum(self, diameter: float, focus: float) -> PointSpectrum:
+            azimuth = self.config.scene.cylinders[0].azimuth
+            by = 5.0 * azimuth * diameter / N / (K[0] + K[-1])
+            return super().spectrum(diameter + by, focus)
+
+    monkeypatch.setattr(slopes, "Instrument", Turned)
+    key, unseen = "scene.cylinders.0.azimuth", "scene.cylinders.0.elevation"
+    table = calibration(asked(diameters={"num": 8}, tolerances={key: "2 deg", unseen: "1 deg"}))
+    write(table, tmp_path / "calibration.nc")
+    table = read(tmp_path / "calibration.nc", "calibration")
+    assert key in table["parameter"].values
+    sensitivity = table["scene_cylinders_0_azimuth_sensitivity"]
+    assert sensitivity.attrs["units"] == "mrad/nm"
+    # of φ = n (k + k') d' + BEND d'², d' = d (1 + s a): ∂²φ/∂d∂a = s (n (k + k') + 4 BEND d)
+    share = 5.0 / N / (K[0] + K[-1])
+    expected = share * (N * (K[0] + K[-1]) + 4 * BEND * table["diameter"].values)
+    assert sensitivity.values == pytest.approx(expected, rel=1e-3)
+    budget = table["budget"].sel(parameter=key)
+    assert budget.values == pytest.approx(np.radians(2) * expected, rel=0.02)
+    (doubt,) = (line for line in doubts(table) if "tolerances" in line)
+    assert doubt.startswith(f"calibration.tolerances.{unseen} given, which the scheme")
+
+
 def test_the_slopes_of_the_neuron_obey_the_chain_rule(calibrated: xr.Dataset) -> None:
     chained = (
         calibrated["fixed_focus_phase_slope"]

@@ -86,6 +86,7 @@ OTHERS: dict[str, Any] = {
             "offset": "1 nm",
             "wavelength_min": "1 nm",
             "wavelength_max": "1 nm",
+            "scene.cylinders.0.azimuth": "1 deg",
         },
     },
     "expansion": {
@@ -94,6 +95,12 @@ OTHERS: dict[str, Any] = {
         "rest": 5,
         "outliers": "drop",
         "drift": "linear",
+        "fit": ["diameter", "gap"],
+        "bands": [["650 nm", "760 nm"], ["760 nm", "900 nm"]],
+    },
+    "responses": {
+        "diameters": {"num": 2},
+        "membrane": {"thickness": "4 nm", "index": 1.45},
     },
     "action_potential": {"diameter": "1.5 um", "expansion": "2 nm", "photons": 1e9, "seed": 2},
     "design": {
@@ -135,7 +142,7 @@ def test_every_key_is_edited_below() -> None:
     ends = {f"{key}.{end}" for key in leaves for end in ("start", "stop", "num")}
     optional = {
         "expansion.series", "archive.title", "archive.description", "archive.date",
-        "calibration.scheme",
+        "calibration.scheme", "calibration.tolerances.scene.cylinders.0.azimuth",
     }  # fmt: skip
     assert leaves - ends == set(EDITS) | keys_in(OTHERS) - optional
 

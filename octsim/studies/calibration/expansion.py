@@ -9,13 +9,16 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
 from octsim.base.errors import ConfigError, DatasetError, OctsimError, OctsimWarning
+from octsim.config.calibration import DIAMETER
 from octsim.config.models import Config
 from octsim.datasets.files import flags, make
+from octsim.phase.measured_bands import read_series_of_bands
 from octsim.phase.measured_series import Series, read_series
 from octsim.phase.outliers import Standing, outliers
 from octsim.phase.rest_error import ErrorStatus, smallest_step, stated_change
 from octsim.studies.calibration.expansion_doubts import doubts as doubts
 from octsim.studies.calibration.expansion_doubts import named_samples, outliers_in
+from octsim.studies.calibration.expansion_fit import series_fit
 
 Array = NDArray[np.float64]
 LARGEST = 20.0
@@ -125,30 +128,36 @@ def expansion(
     return Expansion(change, np.broadcast_to(statistical, change.shape), systematic)
 
 
-def series_of(config: Config) -> Series:
-    """Return the series that a config names.
-
-    Raises
-    ------
-    OctsimError
-        If it names none, or one that can't be read.
-    """
+def _file_of(config: Config) -> str:
+    """Return the file of the series that a config names; refuse a config that names none."""
     if config.expansion.series is None:
         raise ConfigError(
             "expansion.series: not given; name the CSV or netCDF file that holds time and phase"
         )
-    return read_series(config.expansion.series)
+    return config.expansion.series
 
 
-def expansion_of_series(config: Config, calibration: xr.Dataset) -> xr.Dataset:
-    """Return the expansions of the series that a config names; see `series_expansion`.
+def expansion_of_series(
+    config: Config, calibration: xr.Dataset | None, responses: xr.Dataset | None = None
+) -> xr.Dataset:
+    """Return the expansions of the series that a config names.
+
+    By a calibration, see `series_expansion`; where phases are of several bands, or more than the
+    diameter is fitted, by responses: see `octsim.studies.calibration.expansion_fit.series_fit`.
 
     Raises
     ------
     OctsimError
         If there is no such series, or the series or the diameter does not serve.
     """
-    return series_expansion(config, series_of(config), calibration)
+    file = _file_of(config)  # without one nothing else is there
+    if config.expansion.several and responses is not None:
+        series = read_series_of_bands(file, len(config.expansion.bands))
+        return series_fit(config, series, responses)
+    if calibration is None or config.expansion.several:
+        lacking = "responses" if config.expansion.several else "calibration"
+        raise OctsimError(f"{lacking}: not given; expansion.fit and bands ask for it")
+    return series_expansion(config, read_series(file), calibration)
 
 
 def series_expansion(config: Config, series: Series, calibration: xr.Dataset) -> xr.Dataset:
@@ -234,10 +243,23 @@ def series_in(found: xr.Dataset) -> xr.Dataset:
         If it records none, as those of octsim 0.1.0.
     """
     names = {f"measured_{name}": name for name in ("phase", "phase_error")}
+    if "band" in found.dims:
+        return _series_of_bands_in(found)
     held = {name: plain for name, plain in names.items() if name in found}
     if "phase" not in held.values():
         raise DatasetError("its measured series is not recorded in it")
     return found[list(held)].rename(held).drop_attrs(deep=False)
+
+
+def _series_of_bands_in(found: xr.Dataset) -> xr.Dataset:
+    """Return them as `octsim.phase.measured_bands.read_series_of_bands` reads them."""
+    series = {
+        f"{name}_{band + 1}": found[f"measured_{name}"].isel(band=band, drop=True)
+        for name in ("phase", "phase_error")
+        if f"measured_{name}" in found
+        for band in range(found.sizes["band"])
+    }
+    return xr.Dataset(series).drop_attrs(deep=False)
 
 
 def summary(found: xr.Dataset) -> str:
@@ -250,6 +272,13 @@ def summary(found: xr.Dataset) -> str:
         for error in (float(one[f"{name}_error"]) for name in ("statistical", "systematic"))
     )
     besides = f", {alone.sum()} outliers not counted" if alone.any() else ""
+    if "quantity" in found.dims:
+        others = [
+            f"{name} {float(one['change'].sel(quantity=name)):+.4f} {unit}"
+            for name, unit in zip(one["quantity"].values, one["quantity_unit"].values, strict=True)
+            if name != DIAMETER
+        ]
+        besides += f", with {', '.join(others)}" if others else ""
     return (
         f"largest change {float(one['expansion']):+.4f} nm at {float(one['time']):.6g} s, ± "
         f"{statistical} (statistical) ± {systematic} (systematic){besides}; "

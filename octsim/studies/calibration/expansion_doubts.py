@@ -7,10 +7,11 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from octsim.base.errors import DatasetError
-from octsim.config.calibration import ExpansionConfig
+from octsim.config.calibration import DIAMETER, ExpansionConfig
 from octsim.phase.measured_series import Series
 from octsim.phase.outliers import THRESHOLD, outliers
 from octsim.phase.rest_error import ErrorStatus, stated_change, student_factor
+from octsim.studies.responses.separability import MOST_GROWTH, Separability
 
 Array = NDArray[np.float64]
 _NAMED = 3
@@ -19,6 +20,8 @@ _APART = 5.0
 """How many times a phase_error is off the scatter at rest, from which it is asked about."""
 _ENOUGH = 8
 """Samples whose scatter tells that."""
+_MISFIT = 3.0
+"""Of the phases' reduced chi-square, from which it is said."""
 _SURE = 4.0
 """Standard deviations from which a drift at rest is said to be one."""
 
@@ -34,8 +37,18 @@ def measured_in(found: xr.Dataset) -> Series:
 
 
 def outliers_in(found: xr.Dataset) -> NDArray[np.bool_]:
-    """Mark the outliers of the series that an expansion records, (T,)."""
-    return outliers(measured_in(found))
+    """Mark the outliers of the series that an expansion records, (T,); of bands those of any."""
+    marked = [outliers(measured_in(one)) for one in bands_in(found)]
+    return np.asarray(np.any(marked, axis=0))
+
+
+def bands_in(found: xr.Dataset) -> list[xr.Dataset]:
+    """Return an expansion by the phase of each band, or the one that has no bands."""
+    if "band" not in found.dims:
+        return [found]
+    slope = found["phase_response"].sel(quantity=DIAMETER)
+    of_each = found.assign(fixed_focus_phase_slope=slope)
+    return [of_each.isel(band=number) for number in range(found.sizes["band"])]
 
 
 def named_samples(marked: NDArray[np.bool_], time: Array, change: Array | None = None) -> str:
@@ -55,8 +68,12 @@ def doubts(found: xr.Dataset) -> list[str]:
 
     These are outliers, an error at rest that is only the recorder's rounding or not known at all,
     one that was given and is 0 or far from the scatter at rest, and a drift at rest that is not
-    subtracted.
+    subtracted; of phases in bands those of each, and what can't be told apart.
     """
+    if "band" in found.dims:
+        each = [doubts(one) for one in bands_in(found)]
+        named = [f"phase_{at + 1}: {line}" for at, lines in enumerate(each) for line in lines]
+        return [*_alike(found), *named]
     said = []
     settings = ExpansionConfig.model_validate(json.loads(found.attrs["config"])["expansion"])
     series, change = measured_in(found), found["expansion"].values
@@ -92,6 +109,27 @@ def doubts(found: xr.Dataset) -> list[str]:
     said += _given_errors(series, settings)
     if settings.drift == "none":
         said += _drifting(series, settings.rest, float(found["fixed_focus_phase_slope"]))
+    return said
+
+
+def _alike(found: xr.Dataset) -> list[str]:
+    """Say which quantities the phases can't tell apart, and that they may be of something else."""
+    said, status = [], found["separability"].values
+    names = [str(name) for name in found["quantity"].values]
+    lost = [name for name, code in zip(names, status, strict=True) if code]
+    if lost:
+        worst = Separability(int(status.max()))
+        said.append(
+            f"{', '.join(lost)} {worst.name.lower()}: responses are too alike in these bands, so "
+            f"an error grows more than {MOST_GROWTH:g} times by what else is fitted; "
+            f"{worst.remedy}"
+        )
+    misfit = float(found["reduced_chi_square"].mean())
+    if misfit > _MISFIT:
+        said.append(
+            f"the phases are {misfit:.3g} times as far (as squares) from what {', '.join(names)} "
+            "can do as their errors say; something else has changed too, or the errors are larger"
+        )
     return said
 
 

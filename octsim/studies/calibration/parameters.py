@@ -2,71 +2,18 @@
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
 
-from octsim.config.derive import nested, part_of
-from octsim.config.dispersion import moved
-from octsim.config.grid import value_at
+from octsim.config.derive import nested
 from octsim.config.light import FibreMode, GaussianFill
 from octsim.config.models import Config
 from octsim.config.scheme import scheme_of
 from octsim.config.units import format_angle, format_length
 from octsim.instrument.build import detector_of
 from octsim.schemes.table import Ability
+from octsim.studies.calibration.parameter import Overlay, Parameter, index_of, keyed
+from octsim.studies.calibration.scene_parameters import scene_parameter
 
-Overlay = Mapping[str, Any]
 _LEAST_NA = 1e-3
-
-
-def _anything(_: Config) -> tuple[float, float]:
-    return -math.inf, math.inf
-
-
-class Parameter(NamedTuple):
-    """Something that may be off, and how a config is changed to have it so."""
-
-    step: float
-    """Largest change, for a derivative."""
-    believed: Callable[[Config], float]
-    """Returns what it is in a config."""
-    overlay: Callable[[Config, float], Overlay]
-    """Returns what makes it some value in a config."""
-    limits: Callable[[Config], tuple[float, float]] = _anything
-    """Returns the least and the most that it may be, with the others within theirs."""
-    counts: Callable[[Config], bool] = lambda _: True
-    """Returns whether a config's scheme sees it."""
-    unit: str = "um"
-    """um, rad, or 1."""
-
-
-def _keyed(step: float, key_of: Callable[[Config], str], **others: Any) -> Parameter:
-    """Return a parameter that is a key of the config."""
-
-    def overlay(config: Config, value: float) -> Overlay:
-        key = key_of(config)
-        as_text = isinstance(part_of(config.to_dict(), key), str)
-        return nested(key, format_length(value) if as_text else value)
-
-    def believed(config: Config) -> float:
-        return float(value_at(config, key_of(config)))
-
-    return Parameter(step, believed, overlay, **others)
-
-
-def _index(medium_of: Callable[[Config], str], **others: Any) -> Parameter:
-    def believed(config: Config) -> float:
-        material = config.scene.refractive_index.of[medium_of(config)]
-        return material.index(config.spectrum.middle).real
-
-    def overlay(config: Config, value: float) -> Overlay:
-        medium = medium_of(config)
-        given = dict(config.scene.refractive_index)[medium]
-        # as dispersive as it is believed to be
-        index = moved(given, value, config.spectrum.middle)
-        return nested(f"scene.refractive_index.{medium}", index)
-
-    given: dict[str, Any] = {"limits": lambda _: (1.0, 10.0), "unit": "1"} | others
-    return Parameter(1e-3, believed, overlay, **given)
 
 
 def _above_aperture(index: float, aperture: float) -> tuple[float, float]:
@@ -158,12 +105,12 @@ PARAMETERS: Mapping[str, Parameter] = {
     "diameter": Parameter(
         2e-3, lambda _: 0.0, _nothing, lambda c: (-0.9 * c.calibration.diameters.start, math.inf)
     ),
-    "gap": _keyed(1e-3, lambda c: c.scene.swept_gap_key, limits=lambda _: (0.0, math.inf)),
-    "glass": _index(lambda c: c.scene.objective_medium, limits=_glass_limits),
-    "water": _index(lambda c: c.scene.host_medium, limits=_water_limits),
-    "neuron": _index(lambda c: c.scene.swept_medium),
+    "gap": keyed(1e-3, lambda c: c.scene.swept_gap_key, limits=lambda _: (0.0, math.inf)),
+    "glass": index_of(lambda c: c.scene.objective_medium, limits=_glass_limits),
+    "water": index_of(lambda c: c.scene.host_medium, limits=_water_limits),
+    "neuron": index_of(lambda c: c.scene.swept_medium),
     "focus": Parameter(4e-3, lambda _: 0.0, _nothing),
-    "numerical_aperture": _keyed(
+    "numerical_aperture": keyed(
         3e-3, lambda _: "objective.numerical_aperture", limits=_aperture_limits, unit="1"
     ),
     "detector_radius": Parameter(
@@ -176,13 +123,19 @@ PARAMETERS: Mapping[str, Parameter] = {
     "polarisation": Parameter(
         0.04, _direction, _directed, counts=_is_polarised, unit="rad"
     ),
-    "offset": _keyed(0.01, _offset_key, counts=_can(Ability.OFF_AXIS)),
-    "wavelength_min": _keyed(2e-4, lambda _: "spectrum.wavelength.min"),
-    "wavelength_max": _keyed(2e-4, lambda _: "spectrum.wavelength.max"),
+    "offset": keyed(0.01, _offset_key, counts=_can(Ability.OFF_AXIS)),
+    "wavelength_min": keyed(2e-4, lambda _: "spectrum.wavelength.min"),
+    "wavelength_max": keyed(2e-4, lambda _: "spectrum.wavelength.max"),
 }  # fmt: skip
 """Each by the name of its tolerance."""
 
 
+def parameter_named(name: str) -> Parameter:
+    """Return the parameter of a tolerance: a row of the table, or a number of the scene."""
+    return PARAMETERS[name] if name in PARAMETERS else scene_parameter(name)
+
+
 def parameters_of(config: Config) -> Mapping[str, Parameter]:
-    """Return the parameters that the scheme of a config sees, by their names."""
-    return {name: one for name, one in PARAMETERS.items() if one.counts(config)}
+    """Return the parameters that the scheme of a config sees, by the names of their tolerances."""
+    every = {name: parameter_named(name) for name in config.calibration.tolerances.of}
+    return {name: one for name, one in every.items() if one.counts(config)}

@@ -13,6 +13,7 @@ from octsim.config.derive import by_rays
 from octsim.config.maxwell import beyond_maxwell
 from octsim.config.models import Config
 from octsim.config.processing import Processing
+from octsim.config.scene_keys import variable_name
 from octsim.config.scheme import options_of, scheme_of
 from octsim.datasets.files import flags, make
 from octsim.instrument.points import Points
@@ -178,7 +179,7 @@ def _variables(
         "interpolation_error": ("diameter", missed),
         **{
             # to a length they are per µm
-            f"{name}_sensitivity": (
+            f"{variable_name(name)}_sensitivity": (
                 "diameter", sensitivity[:, number] * (1e-3 if one.unit == "um" else 1.0),
             )
             for number, (name, one) in enumerate(parameters.items())

@@ -45,7 +45,7 @@ def _largest(table: xr.Dataset) -> str:
 
 def doubts(table: xr.Dataset) -> list[str]:
     """Say, a line each, where a calibration is not what one would want."""
-    said, status = _doubts_of_spectra(table), table["model_status"].values
+    said, status = _doubts_of_spectra(table) + _unseen(table), table["model_status"].values
     compared, unknown = (status == one for one in (ModelStatus.COMPARED, ModelStatus.NOT_COMPARED))
     slope = table["fixed_focus_phase_slope"].values
     lost = np.abs(slope) < table["fixed_focus_phase_slope_standard_error"].values
@@ -74,6 +74,19 @@ def doubts(table: xr.Dataset) -> list[str]:
             "known there (NaN); where it was compared it is often 10 % off (docs/validity.md)"
         )
     return said
+
+
+def _unseen(table: xr.Dataset) -> list[str]:
+    """Say which tolerances of the scene's numbers the slope's error has nothing of."""
+    tolerances = Config.model_validate(recorded_config(table.attrs)).calibration.tolerances
+    lacking = [key for key in tolerances.of_scene if key not in table["parameter"].values]
+    if not lacking:
+        return []
+    return [
+        f"calibration.tolerances.{lacking[0]}{f' and {len(lacking) - 1} more' * bool(lacking[1:])} "
+        "given, which the scheme of the slope does not see, so its standard error has nothing of "
+        "it; leave it out, or give another calibration.scheme"
+    ]
 
 
 def _doubts_of_spectra(table: xr.Dataset) -> list[str]:

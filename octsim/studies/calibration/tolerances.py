@@ -10,7 +10,7 @@ from numpy.polynomial.hermite_e import hermegauss
 from octsim.config.derive import changed
 from octsim.config.models import Config
 from octsim.phase.derivatives import Array, stencil
-from octsim.studies.calibration.parameters import PARAMETERS, parameters_of
+from octsim.studies.calibration.parameters import parameter_named, parameters_of
 
 _NODES, _WEIGHTS = (part.round(15) + 0.0 for part in hermegauss(5))
 _WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
@@ -56,7 +56,7 @@ def nodes_of(config: Config, name: str) -> Nodes:
 
     Of a tolerance of 0 they are those of a small one, and all of the weight is on 0.
     """
-    one, tolerance = PARAMETERS[name], getattr(config.calibration.tolerances, name)
+    one, tolerance = parameter_named(name), config.calibration.tolerances.of[name]
     at, (least, most) = one.believed(config), one.limits(config)
     scale = tolerance or one.step
     below, above = (room if room > _ROOM * scale else 0.0 for room in (at - least, most - at))
@@ -70,7 +70,7 @@ def nodes_of(config: Config, name: str) -> Nodes:
 
 def offsets_of(config: Config, name: str) -> Array:
     """Return five small changes of a parameter, (5,), that leave it possible."""
-    one = PARAMETERS[name]
+    one = parameter_named(name)
     return stencil(one.believed(config), one.step, *one.limits(config))
 
 
@@ -98,7 +98,7 @@ def moved(config: Config, changes: Mapping[str, float], law_slope: float) -> Pla
     focus = law_slope * diameter + changes.get("focus", 0.0)
     overlays = []
     for name, by in changes.items():
-        one = PARAMETERS[name]
+        one = parameter_named(name)
         least, most = one.limits(config)
         value = min(max(least, one.believed(config) + by), most)  # whatever the last digit is
         overlays.append(one.overlay(config, value))
@@ -109,7 +109,7 @@ def drawn(config: Config, generator: np.random.Generator, law_slope: float) -> P
     """Return an instrument and a neuron drawn normally by the tolerances, as far as possible."""
     changes = {}
     for name, one in parameters_of(config).items():
-        by = generator.normal(0.0, getattr(config.calibration.tolerances, name))
+        by = generator.normal(0.0, config.calibration.tolerances.of[name])
         at, (least, most) = one.believed(config), one.limits(config)
         changes[name] = min(max(by, least - at), most - at)
     return moved(config, changes, law_slope)

@@ -9,6 +9,7 @@ import pytest
 from octsim.config.light import FibreMode, GaussianFill
 from octsim.config.load import load_config
 from octsim.config.models import Config
+from octsim.config.scene_keys import scene_values
 from octsim.instrument.build import polarisation_of
 from octsim.optics.polarisation import jones_rows
 from octsim.studies.calibration.parameters import PARAMETERS, parameters_of
@@ -124,3 +125,60 @@ def test_an_instrument_near_its_limits_is_drawn_within_them(aperture: float) -> 
         place = drawn(config, generator, 0.58)
         glass = place.config.scene.refractive_index.glass
         assert place.config.objective.numerical_aperture < glass
+
+
+AXON: dict[str, Any] = {
+    "scene": {
+        "cylinders": [
+            {"medium": "neuron", "shells": [{"medium": "myelin", "thickness": "5 nm"}]},
+            {"medium": "neuron", "diameter": "1 um", "x": "1.8 um"},
+        ],
+        "refractive_index": {"myelin": 1.44},
+        "attenuation": {"neuron": "10 /cm"},
+    },
+    "tracing": {"max_intersections": 15},
+}
+NUMBERS = {
+    "scene.cylinders.1.x": "0.5 um",
+    "scene.cylinders.1.azimuth": "0 deg",
+    "scene.cylinders.0.shells.0.thickness": "2 nm",
+    "scene.refractive_index.myelin": 0.005,
+    "scene.attenuation.neuron": "1 /cm",
+}
+
+
+def test_a_tolerance_of_any_number_of_the_scene_is_one_in_any_unit_of_its_kind() -> None:
+    config = load_config(AXON, {"calibration": {"tolerances": NUMBERS}})
+    written = NUMBERS | {"scene.cylinders.1.x": "500 nm", "scene.attenuation.neuron": "0.1 /mm"}
+    assert load_config(AXON, {"calibration": {"tolerances": written}}) == config
+    assert load_config(config.to_dict()) == config
+    of = config.calibration.tolerances.of
+    assert [of[key] for key in NUMBERS] == pytest.approx([0.5, 0.0, 2e-3, 0.005, 1e-4])
+
+
+def test_numbers_of_the_scene_move_alone_as_far_as_a_scene_is_possible() -> None:
+    config = load_config(AXON, {"calibration": {"tolerances": NUMBERS}})
+    assert set(NUMBERS) <= set(parameters_of(config))  # rays see all of them
+    believed = scene_values(config)
+    for name in NUMBERS:
+        for by in nodes_of(config, name).offset.tolist():
+            there = scene_values(moved(config, {name: by}, LAW).config)
+            for other, value in believed.items():
+                expected = value + by * (other == name)
+                assert there[other] == pytest.approx(expected, abs=1e-12), name
+    # the axes of neighbours that touch are 1.612 µm apart in x (2.4 and 1 µm, on one plane)
+    nearest = nodes_of(config, "scene.cylinders.1.x").offset[0]
+    assert -(1.8 - np.sqrt(2.4)) < nearest < -0.01
+    assert nodes_of(config, "scene.cylinders.1.x").offset[-1] > 1
+    assert nodes_of(config, "scene.cylinders.0.shells.0.thickness").offset[0] > -5e-3
+    generator = np.random.default_rng(4)
+    for _ in range(20):
+        drawn(config, generator, LAW)
+
+
+def test_numbers_of_the_scene_count_where_the_scheme_sees_them() -> None:
+    tolerances = {"scene.cylinders.0.azimuth": "1 deg", "scene.cylinders.0.elevation": "1 deg"}
+    config = load_config({"calibration": {"tolerances": tolerances}})
+    by_waves = parameters_of(converged(config))
+    assert "scene.cylinders.0.azimuth" in by_waves
+    assert "scene.cylinders.0.elevation" not in by_waves
