@@ -1,6 +1,7 @@
 """What the config's sections are made of: numbers, lengths and ranges with their limits."""
 
 from collections.abc import Mapping
+from datetime import date
 from typing import TYPE_CHECKING, Annotated, Any
 
 import yaml
@@ -43,9 +44,19 @@ def absent(value: object) -> object:
 def as_text(value: Any) -> str:
     """Write a value of the config as a user would."""
     if isinstance(value, Mapping | list | tuple | bool) or value is None:
-        text: str = yaml.safe_dump(value, default_flow_style=True, width=10_000)
+        text: str = yaml.safe_dump(_plain(value), default_flow_style=True, width=10_000)
         return text.removesuffix("...\n").strip()
     return str(value)
+
+
+def _plain(value: Any) -> Any:
+    """Return what YAML can write, with numbers where they are keys as text."""
+    if isinstance(value, Mapping):
+        numbers = {key: int(key) for key in value if isinstance(key, str) and key.isdecimal()}
+        return {numbers.get(key, key): _plain(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(part) for part in value]
+    return value if isinstance(value, str | int | float | date) or value is None else str(value)
 
 
 Number = Annotated[float, BeforeValidator(number), Field(allow_inf_nan=False)]

@@ -15,7 +15,10 @@ from octsim.config.effects import (
     REFERENCE_FORM,
     FocalShiftConfig,
     ReferenceArmConfig,
+    zernike_name,
 )
+from octsim.config.fields import as_text
+from octsim.config.light import PUPIL_FORM
 from octsim.config.models import FIXED, Config, FocusLine, Grid
 from octsim.config.scene import Layer, Shell
 from octsim.config.units import ANGLE, LENGTH
@@ -86,6 +89,7 @@ def nearest_key(key: str) -> str:
 _OF_DISPERSIONS = (
     "cauchy", "sellmeier", "table", "unit", "B", "C", "wavelength", "n", "kappa",
 )  # fmt: skip
+_DECIMAL_COMMA = re.compile(r"\s*[-+]?[0-9]+,[0-9]+\s*")
 _LONGEST = 300
 _OF_TWO_KINDS = (
     ["sweep", "focus"],
@@ -115,7 +119,7 @@ def explain(error: ErrorDetails) -> str:
     key = next((name for name in (place[-1], path) if name in set(known_keys())), None)
     if varies and key and entry not in _LISTS:
         return (
-            f"{path}: {error['input']!r} given; several values of one key stand in the grid: "
+            f"{path}: {_shown(error['input'])} given; several values of one key stand in the grid: "
             f"write grid: {{{key}: [...]}}"
         )
     if "." in place[-1] and error["type"] == "extra_forbidden":
@@ -127,8 +131,10 @@ def explain(error: ErrorDetails) -> str:
         return f"{path}: unknown key; the nearest known one is {nearest_key(entry)}"
     if error["type"] == "missing":
         return f"{path}: missing; it has no default, so give it a value"
-    message = error["msg"].removeprefix("Value error, ").replace("Input should", "it should")
-    message = message.replace("Value should", "it should")
+    if error["type"] == "invalid_key":
+        section = f"{'.'.join(place[:-1])}: " if place[1:] else ""
+        return f"{section}{place[-1]} given as a key; keys are names, such as scene"
+    message = message_of(error)
     if path == "run":
         message = (
             "it should be a plain name as text: letters, digits, '.', '_' and '-', no path, 100 at "
@@ -149,8 +155,8 @@ def explain(error: ErrorDetails) -> str:
         message = _FORMS[path]
     elif error["type"] in {"model_type", "model_attributes_type"}:
         message = "it should be a mapping of keys to values"
-    elif path == "objective.pupil":
-        message = "it should be uniform, {gaussian: 1.0} or {fibre: 5 um}, or null"
+    elif path == "objective.pupil" and error["type"] != "value_error":
+        message = PUPIL_FORM
     elif error["type"] == "string_pattern_mismatch" and path.startswith("scene."):
         message = "it should be a plain name: letters, digits, '_' and '-', a letter first"
     elif path == "sweep.focus":
@@ -167,16 +173,32 @@ def explain(error: ErrorDetails) -> str:
             f"it should be a{whole} number, written out as digits and without quotes, in a config "
             "file: in braces on the command line it is text"
         )
+        if _DECIMAL_COMMA.fullmatch(error["input"]):
+            message = f"write it with a point, as {error['input'].strip().replace(',', '.')}"
     elif error["type"] == "int_type":
         message = "it should be a whole number, written out as digits"
     elif error["type"] in {"greater_than_equal", "less_than_equal"} and unit_of(path) != "1":
         message += f" {unit_of(path)}"
-    return f"{path}: {_shown(error['input'])} given; {message}"
+    named = ""
+    if entry == "objective.zernike" and place[-1].isdecimal():
+        named = f" ({name})" if (name := zernike_name(int(place[-1]))) else ""
+    return f"{path}: {_shown(error['input'])} given{named}; {message}"
+
+
+def message_of(error: ErrorDetails) -> str:
+    """Return what is said of an error, in the config's words."""
+    if error["type"] in {"too_short", "too_long"}:
+        least = error["type"] == "too_short"
+        count = error["ctx"]["min_length" if least else "max_length"]
+        what = f"{count} or more" if least else f"{count} at most"
+        return f"it should have {what}, not {error['ctx']['actual_length']}"
+    message = error["msg"].removeprefix("Value error, ").replace("Input should", "it should")
+    return message.replace("Value should", "it should")
 
 
 def _shown(value: object) -> str:
     """Write what was given; of a long table its start."""
-    text = repr(value)
+    text = repr(value) if isinstance(value, str) else as_text(value)
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]} …"
 
 

@@ -15,8 +15,6 @@ from octsim.schemes.table import SCHEMES
 
 _THESIS = ("glass", "water", "neuron")
 _TRIED = 128  # steps over the band in which an index is looked at
-_PISTON = 1
-_SMALL_RMS = 5e-3  # µm
 
 
 def impossible_scene(config: Config) -> Iterator[str]:
@@ -236,7 +234,6 @@ def scene_remarks(config: Config) -> Iterator[str]:
             )
         if cylinder.elevation:
             yield _met(config, key, cylinder)
-    yield from _aberration_remarks(config)
     aperture, index = config.objective.numerical_aperture, config.host_index
     rays = SCHEMES[config.tracing.scheme].light == "rays"
     if index < aperture and rays and not config.polarisation.given:
@@ -245,20 +242,6 @@ def scene_remarks(config: Config) -> Iterator[str]:
             f"{index}, with polarisation.input: none: the thesis's split makes light off the plane "
             "too bright where the focus is off the law; give polarisation.input: unpolarised"
         )
-
-
-def _aberration_remarks(config: Config) -> Iterator[str]:
-    objective = config.objective
-    by_rays = SCHEMES[config.tracing.scheme].light == "rays"
-    if not by_rays or objective.zernike_rays != "normal":
-        return
-    for number, rms in objective.zernike.of.items():
-        if number != _PISTON and abs(rms) > _SMALL_RMS:
-            yield (
-                f"objective.zernike.{number}: {format_length(rms)} moves rays by less than the "
-                "diffraction spot, and they exaggerate it, as the detector cuts by position; "
-                "compare with tracing.scheme: fullwave"
-            )
 
 
 def _met(config: Config, key: str, cylinder: CylinderConfig) -> str:
