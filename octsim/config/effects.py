@@ -46,8 +46,8 @@ def _families() -> dict[str, dict[int, str]]:
 
 
 _FAMILIES = _families()
-_NAME_OF = {
-    **{number: name for name, number in reversed(NAMES.items())},
+_NAME_OF: Mapping[int, str] = {
+    **{number: name for name, number in reversed(list(NAMES.items()))},
     **{number: name for terms in _FAMILIES.values() for number, name in terms.items()},
 }
 

@@ -1,6 +1,6 @@
 """What the config's sections are made of: numbers, lengths and ranges with their limits."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from datetime import date
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -31,9 +31,25 @@ def as_tuple(value: object) -> object:
 
 def listed(value: object) -> object:
     """Return a list as a tuple; of anything else say that it is none."""
-    if not isinstance(value, list | tuple):
+    plain = plain_data(value)
+    if not isinstance(plain, list | tuple):
         raise ValueError("it should be a list")  # noqa: TRY004
-    return tuple(value)
+    return tuple(plain)
+
+
+def plain_data(value: Any) -> Any:
+    """Return lists and numbers in the place of arrays, other sequences and numpy's numbers."""
+    if isinstance(value, Mapping):
+        return {key: plain_data(part) for key, part in value.items()}
+    if isinstance(value, BaseModel | str | bytes | int | float) and not hasattr(value, "dtype"):
+        return value
+    if hasattr(value, "__array__"):
+        import numpy as np  # here, as reading a config takes half as long without
+
+        return np.asarray(value).tolist()
+    if isinstance(value, Sequence):
+        return [plain_data(part) for part in value]
+    return value
 
 
 def absent(value: object) -> object:

@@ -86,11 +86,12 @@ def _reference_arm(config: Config) -> Iterator[str]:
         )
     periods = abs(arm.length) * 2 * (1 / shortest - 1 / longest)  # of π/L in the band
     needed = math.ceil(2 * periods) + 1
-    if config.spectrum.samples < needed:
+    given = config.spectrum.samples
+    if given < needed:
         yield (
             f"{key}.length: {arm.length:.6g} um has a fringe of period "
-            f"{math.pi / abs(arm.length):.3g} /um, which spectrum.samples: {config.spectrum.samples} alias; give {needed} samples "
-            "or more, or a shorter length"
+            f"{math.pi / abs(arm.length):.3g} /um, which spectrum.samples: {given} alias; give "
+            f"{needed} samples or more, or a shorter length"
         )
 
 

@@ -22,6 +22,7 @@ from octsim.config.light import PUPIL_FORM
 from octsim.config.models import FIXED, Config, FocusLine, Grid
 from octsim.config.scene import Layer, Shell
 from octsim.config.units import ANGLE, LENGTH
+from octsim.config.wording import message_of
 
 
 def known_keys(model: type[BaseModel] | BaseModel = Config, prefix: str = "") -> Iterator[str]:
@@ -183,17 +184,6 @@ def explain(error: ErrorDetails) -> str:
     if entry == "objective.zernike" and place[-1].isdecimal():
         named = f" ({name})" if (name := zernike_name(int(place[-1]))) else ""
     return f"{path}: {_shown(error['input'])} given{named}; {message}"
-
-
-def message_of(error: ErrorDetails) -> str:
-    """Return what is said of an error, in the config's words."""
-    if error["type"] in {"too_short", "too_long"}:
-        least = error["type"] == "too_short"
-        count = error["ctx"]["min_length" if least else "max_length"]
-        what = f"{count} or more" if least else f"{count} at most"
-        return f"it should have {what}, not {error['ctx']['actual_length']}"
-    message = error["msg"].removeprefix("Value error, ").replace("Input should", "it should")
-    return message.replace("Value should", "it should")
 
 
 def _shown(value: object) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from octsim.config.dispersion import described, material_of, span_of
+from octsim.config.dispersion_forms import TableIndex
 from octsim.config.models import Config
 from octsim.config.scene import SWEPT, CylinderConfig, SceneConfig
 from octsim.config.units import format_length
@@ -68,10 +69,12 @@ def _indices(config: Config) -> Iterator[str]:
         key, index = f"scene.refractive_index.{medium}", given[medium]
         material, span = material_of(index), span_of(index)
         if span and not (span[0] <= shortest and longest <= span[1]):
+            told = f", which is known from {span[0]:.10g} um to {span[1]:.10g} um"
+            of_table = isinstance(index, TableIndex)
             yield (
-                f"{key}: {described(index)} given, which is known from {format_length(span[0])} to "
-                f"{format_length(span[1])}, but spectrum.wavelength is from "
-                f"{format_length(shortest)} to {format_length(longest)}; give a dispersion that "
+                f"{key}: {described(index)} given{'' if of_table else told}, but "
+                f"spectrum.wavelength is from {shortest:.10g} um to {longest:.10g} um; "
+                f"{_meant(span, shortest, longest) if of_table else ''}give a dispersion that "
                 "spans the band, or a narrower band"
             )
         elif material.dispersive and (wrong := _impossible_index(material, shortest, longest)):
@@ -80,6 +83,16 @@ def _indices(config: Config) -> Iterator[str]:
                 f"{key}: {described(index)} given, whose index is {found:.6g} at "
                 f"{wavelength:.6g} um, in the band; it should be from 1 to 10 (wavelengths in um)"
             )
+
+
+def _meant(span: tuple[float, float], shortest: float, longest: float) -> str:
+    """Guess which unit the wavelengths of a table are in that is far from the band."""
+    if span[0] < longest and span[1] > shortest:
+        return ""
+    for by, guess in ((1e-3, "nm, not um"), (1e3, "um, not nm"), (0.1, "angstrom, not nm")):
+        if max(span[0] * by, shortest) < min(span[1] * by, longest):
+            return f"are these {guess}? "
+    return ""
 
 
 def _impossible_index(
