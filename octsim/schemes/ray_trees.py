@@ -20,7 +20,9 @@ _TRACED_TO_END = [
 ]  # fmt: skip
 
 
-def rays_at_once(scene: Scene, max_intersections: int, min_amplitude: float, numbers: int) -> float:
+def rays_at_once(
+    scene: Scene, max_intersections: int, min_amplitude: float, numbers: int
+) -> float:
     """Return how many rays go through a scene at once, so that what comes back can be held.
 
     Parameters

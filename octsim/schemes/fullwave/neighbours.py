@@ -131,9 +131,7 @@ def back_to_itself(
     weight = np.concatenate([path.weight[::-1], path.weight]) / np.pi
     size = kappa[:, np.newaxis]
     return Wavevectors(
-        size * np.sin(angle),
-        size * np.cos(angle),
-        np.broadcast_to(weight, (along.size, len(angle))),
+        size * np.sin(angle), size * np.cos(angle), np.broadcast_to(weight, (along.size, len(angle)))
     )
 
 
@@ -142,11 +140,7 @@ def to_another(
 ) -> Wavevectors:
     """Return the plane waves by which a cylinder's light comes to another through planes."""
     scene = step.of
-    indices = [
-        scene.n_glass,
-        scene.n_water,
-        *(layer.n.real for layer in (*scene.films, *scene.above)),
-    ]
+    indices = [scene.n_glass, scene.n_water, *(layer.n.real for layer in (*scene.films, *scene.above))]
     end = _BEYOND * max(indices)
     kappa = np.sqrt(scene.n_water**2 - along**2)[:, np.newaxis]
     depth = min(_DEEPEST, _GROWTH / max(k * abs(step.across), 1e-3))
@@ -166,7 +160,9 @@ def to_another(
     last = max(_last(waves, k * float(kappa.min()) * height) for height in heights)
     span = np.maximum(last - start, 0.5)
     b = start + span * (x + 1) / 2
-    tail = Wavevectors(kappa * np.cosh(b) + 0j, 1j * kappa * np.sinh(b), -1j * span * w / 2 + 0 * b)
+    tail = Wavevectors(
+        kappa * np.cosh(b) + 0j, 1j * kappa * np.sinh(b), -1j * span * w / 2 + 0 * b
+    )
     ahead = [np.concatenate(both, axis=1) for both in zip(first, tail, strict=True)]
     return Wavevectors(
         np.concatenate([-ahead[0], ahead[0]], axis=1), np.concatenate([ahead[1]] * 2, axis=1),

@@ -76,9 +76,7 @@ def several(
     """
     along, weight = along_nodes(lights.aperture, orders.along)
     waves = _waves_of_each(cylinders, orders.waves)
-    lit = [
-        _regular(one, lights, along, k, m, orders) for one, m in zip(cylinders, waves, strict=True)
-    ]
+    lit = [_regular(one, lights, along, k, m, orders) for one, m in zip(cylinders, waves, strict=True)]
     matrices = [
         [_both_signs(t) for t in scattering_of(one, along, k, m)]
         for one, m in zip(cylinders, waves, strict=True)
@@ -105,13 +103,8 @@ def several(
                 for polarisation, (of_e, of_h) in enumerate(_SIGN):
                     # the detected mode's, at −m
                     e, h = (part[:, ::-1] for part in one[polarisation, number].swapaxes(0, 1))
-                    found = (
-                        of_e * epsilon * e * b[polarisation, :, 0]
-                        - of_h * h * b[polarisation, :, 1]
-                    )
-                    collected[term, polarisation, number] += (
-                        (found * turn).sum(-1) * measure
-                    ).sum()
+                    found = of_e * epsilon * e * b[polarisation, :, 0] - of_h * h * b[polarisation, :, 1]
+                    collected[term, polarisation, number] += ((found * turn).sum(-1) * measure).sum()
     return Several(collected, taken)
 
 
