@@ -21,7 +21,7 @@ from octsim.config.fields import as_text
 from octsim.config.light import PUPIL_FORM
 from octsim.config.models import FIXED, Config, FocusLine, Grid
 from octsim.config.scene import Layer, Shell
-from octsim.config.units import ANGLE, LENGTH
+from octsim.config.units import ANGLE, ATTENUATION, LENGTH
 from octsim.config.wording import message_of
 
 
@@ -195,6 +195,8 @@ def _shown(value: object) -> str:
 def unit_of(key: str) -> str:
     """Return the unit of a key of the config: um of a length, rad of an angle, else 1."""
     entry = _of_any_entry(key)
+    if entry.startswith("scene.attenuation."):
+        return ATTENUATION.unit
     if entry in _WITHOUT_DEFAULT:
         return _WITHOUT_DEFAULT[entry]
     value: Any = Config().to_dict()
@@ -209,7 +211,7 @@ _WITHOUT_DEFAULT = {
     "sweep.focus.intercept": LENGTH.unit, "objective.pupil.fibre": LENGTH.unit,
     "scene.cylinders.diameter": LENGTH.unit, "scene.cylinders.gap": LENGTH.unit,
     "scene.cylinders.shells.thickness": LENGTH.unit, "scene.layers.thickness": LENGTH.unit,
-    "objective.focal_shift.reference": LENGTH.unit,
+    "objective.focal_shift.reference": LENGTH.unit, "objective.zernike": LENGTH.unit,
     "interferometer.reference.length": LENGTH.unit, "beam.waist": LENGTH.unit,
     "beam.wavelength": LENGTH.unit, "detector.mode_field_diameter": LENGTH.unit,
     "polarisation.input": ANGLE.unit, "polarisation.analyser": ANGLE.unit,
