@@ -16,7 +16,7 @@ from pydantic import (
 from octsim.config.dispersion_files import read_indices
 from octsim.config.dispersion_forms import CauchyIndex, SellmeierIndex, TableIndex
 from octsim.config.fields import Index, Section, as_text
-from octsim.config.units import parse_length
+from octsim.config.units import find_unit
 from octsim.config.wording import message_of
 from octsim.optics.materials import Cauchy, Constant, Material, Sellmeier, Table
 from octsim.optics.shipped_materials import SHIPPED
@@ -30,7 +30,9 @@ FORMS = (
 
 
 def _unit(unit: str) -> str:
-    parse_length(f"1 {unit}")
+    found = find_unit(unit)
+    if found is None or found.dimension != "length":
+        raise ValueError(f"{unit} is not a unit of length that is known; give one, as nm or um")
     return unit
 
 

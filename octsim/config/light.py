@@ -101,6 +101,10 @@ _ALONG = {
 def _state(value: object) -> object:
     if value in _STATES:
         return value
+    if along := _ALONG.get(str(value).lower()):
+        raise ValueError(
+            f"it should be an angle as 30 deg, unpolarised, left or right; did you mean {along}?"
+        )
     try:
         return _direction(value)
     except ValueError as error:
@@ -110,11 +114,9 @@ def _state(value: object) -> object:
 def _direction(value: object) -> float | None:
     if absent(value) is None:
         return None
-    try:
-        angle = parse_angle(value)
-    except ValueError as error:
-        along = _ALONG.get(str(value).lower())
-        raise ValueError(f"{error}; did you mean {along}?" if along else f"{error}") from None
+    if along := _ALONG.get(str(value).lower()):
+        raise ValueError(f"it should be an angle as 30 deg; did you mean {along}?")
+    angle = parse_angle(value)
     if abs(angle) > _TURN:
         raise ValueError("it should be within a turn, -360 deg to 360 deg")
     return angle

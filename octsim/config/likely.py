@@ -112,15 +112,18 @@ def _thicknesses(config: Config) -> Iterator[tuple[str, float, str]]:
 
 
 def _attenuation(config: Config) -> Iterator[str]:
-    of = config.scene.attenuation.of
+    given, k = config.scene.attenuation.of, config.spectrum.middle
+    of = config.scene.refractive_index.of
     most: dict[str, tuple[float, str]] = {}
     for medium, thick, what in _thicknesses(config):
         most[medium] = max(most.get(medium, (0.0, "")), (thick, what))
     for medium, (thick, what) in most.items():
-        exponent = of.get(medium, 0.0) * thick / 2
+        attenuation = given.get(medium, 0.0) + 2 * k * of[medium].index(k).imag
+        exponent = attenuation * thick / 2
+        key = "attenuation" if given.get(medium) else "refractive_index"
         if exponent > _GONE:
             yield (
-                f"scene.attenuation.{medium}: {of[medium] * 1e4:.6g} /cm leaves "
+                f"scene.{key}.{medium}: an attenuation of {attenuation * 1e4:.6g} /cm leaves "
                 f"{math.exp(-exponent):.2g} of the amplitude after {what}, {thick:.6g} um, so "
                 "light from beyond is gone; give less"
             )
@@ -165,6 +168,12 @@ def _without_contrast(config: Config) -> Iterator[str]:
         if of[outer] != of[scene.host_medium]:
             continue
         key = f"scene.cylinders.{place}.{'shells.0.' if cylinder.shells else ''}medium"
+        if outer == scene.host_medium:
+            yield (
+                f"{key}: {outer}, as what is around it, and the same material on both sides is no "
+                "surface; give another medium"
+            )
+            continue
         yield (
             f"{key}: {outer} has the index of {scene.host_medium} around it, so no light is "
             "reflected from that surface; give another medium or index"

@@ -64,7 +64,10 @@ def read_overlay(path: Path) -> Mapping[str, Any]:
     return content
 
 
-def require_points(given: Mapping[Any, Any], prefix: str = "") -> None:
+_AFTER_COMMA = re.compile(r"[0-9]+( ?[^\W\d]\S*)?")
+
+
+def require_points(given: Any, prefix: str = "") -> None:
     """Refuse what YAML makes of a decimal comma in braces: 1 for a key, and 39 as the next key.
 
     Raises
@@ -73,15 +76,16 @@ def require_points(given: Mapping[Any, Any], prefix: str = "") -> None:
         If there is one.
     """
     before: tuple[Any, Any] | None = None
-    for key, value in given.items():
-        if before and value is None and re.fullmatch(r"[0-9]+( ?[^\W\d]\S*)?", str(key)):
+    if isinstance(given, list):
+        given = dict(enumerate(given))
+    for key, value in given.items() if isinstance(given, Mapping) else ():
+        if before and value is None and _AFTER_COMMA.fullmatch(str(key)):
             name, whole = before
             if isinstance(whole, int) and not isinstance(whole, bool):
                 raise ConfigError(
                     f"{prefix}{name}: {whole},{key} given; write it with a point, as {whole}.{key}"
                 )
-        if isinstance(value, Mapping):
-            require_points(value, f"{prefix}{key}.")
+        require_points(value, f"{prefix}{key}.")
         before = key, value
 
 

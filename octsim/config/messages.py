@@ -179,7 +179,7 @@ def explain(error: ErrorDetails) -> str:
     elif error["type"] == "int_type":
         message = "it should be a whole number, written out as digits"
     elif error["type"] in {"greater_than_equal", "less_than_equal"} and unit_of(path) != "1":
-        message += f" {unit_of(path)}"
+        message += f" {unit_of(path).removeprefix('1')}"
     named = ""
     if entry == "objective.zernike" and place[-1].isdecimal():
         named = f" ({name})" if (name := zernike_name(int(place[-1]))) else ""

@@ -155,6 +155,10 @@ def test_arrays_and_sequences_are_lists() -> None:
             "scene: {refractive_index: {neuron: 1,39}}",
             "scene.refractive_index.neuron: 1,39 given; write it with a point, as 1.39",
         ),
+        (
+            "scene: {cylinders: [{medium: neuron, diameter: 1,5 um}]}",
+            "scene.cylinders.0.diameter: 1,5 um given; write it with a point, as 1.5 um",
+        ),
         ("scene: {gap: 1,5 nm}", "scene.gap: 1,5 nm given; write it with a point, as 1.5 nm"),
         (
             "scene: {refractive_index: {5: 1.4}}",
@@ -196,7 +200,7 @@ BAD: list[tuple[Any, str]] = [
     ({"sellmeier": [1, 2]}, "neuron.sellmeier: [1, 2] given; it should be a mapping"),
     ({"sellmeier": {"b": [0.9], "c": [0.01]}}, "neuron.sellmeier: {b: [0.9], c: [0.01]} given; b, c can't stand here; write B and C, as {B: [...], C: [...]}"),
     ({"table": {"lambda": [0.6, 0.9], "n": [1.4, 1.4]}}, "lambda can't stand here; its columns are wavelength, n and maybe kappa"),
-    ({"table": "none.csv", "unit": "inhc"}, "neuron.unit: 'inhc' given; 'inhc' is not a unit that is known; did you mean 'inch'?"),
+    ({"table": "none.csv", "unit": "inhc"}, "neuron.unit: 'inhc' given; inhc is not a unit of length that is known; give one, as nm or um"),
     ({"sellmeier": {"B": [1]}}, "neuron.sellmeier.C: missing"),
     ({"sellmeier": {"B": [1], "C": [1, 2]}}, "neuron.sellmeier: {B: [1], C: [1, 2]} given; B has 1 numbers and C 2"),
     ({"table": {"wavelength": ["1 um"], "n": [1.4]}}, "neuron.table.wavelength: [1 um] given; it should have 2 or more, not 1"),
@@ -210,7 +214,7 @@ BAD: list[tuple[Any, str]] = [
     ({"table": {**COLUMNS, "kappa": [0.1]}}, "given; kappa has 1 numbers and wavelength 3"),
     ({"table": {**COLUMNS, "kappa": [0, -1e-9, 0]}}, "neuron.table.kappa.1: -1e-09 given; it should be greater than or equal to 0"),
     ({"table": "none.csv"}, "neuron: {table: none.csv} given; none.csv can't be read (No such file"),
-    ({"table": "none.csv", "unit": "kg"}, "neuron.unit: 'kg' given; 'kg' is not a unit of length"),
+    ({"table": "none.csv", "unit": "kg"}, "neuron.unit: 'kg' given; kg is not a unit of length that is known; give one"),
     ({"table": 5}, "neuron.table: 5 given; it should be a mapping"),
 ]  # fmt: skip
 
