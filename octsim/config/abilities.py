@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from octsim.config.dispersion import absorbs, described, without_absorption
-from octsim.config.effects import ZernikeConfig
+from octsim.config.effects import ZernikeConfig, zernike_name
 from octsim.config.fields import as_text
 from octsim.config.mirror_plane import directions, mirrored_at
 from octsim.config.models import Config
@@ -40,7 +40,7 @@ def asked_of_scheme(config: Config) -> Iterator[Asked]:
     scene = config.scene
     for medium, attenuation in scene.attenuation.of.items():
         if attenuation > 0:
-            given = f"{attenuation:g} /um"
+            given = f"{attenuation * 1e4:g} /cm"
             ability = _attenuation_of(config, medium)
             yield Asked(ability, f"scene.attenuation.{medium}", given)
     yield from _indices(config)
@@ -50,9 +50,10 @@ def asked_of_scheme(config: Config) -> Iterator[Asked]:
         yield Asked(Ability.LAYERS, "scene.layers", as_text(layers))
     if len(media) > 1:
         yield Asked(Ability.CYLINDERS, "scene.cylinders", as_text(media))
+    elif not media and len(set(layers)) > 1:
+        yield Asked(Ability.PLATES, "scene.cylinders", as_text(media))
     elif not media:
-        ability = Ability.PLATES if len(set(layers)) > 1 else Ability.NO_CYLINDER
-        yield Asked(ability, "scene.cylinders", as_text(media))
+        yield Asked(Ability.NO_CYLINDER, "scene.layers", as_text(layers))
     if mirrored_at(scene) is None:
         yield Asked(Ability.UNMIRRORED, "scene.cylinders", directions(scene))
     for place, cylinder in enumerate(scene.cylinders):
@@ -75,7 +76,8 @@ def _effects(config: Config) -> Iterator[Asked]:
     objective, beam = config.objective, config.beam
     plain = config.to_dict()
     if objective.zernike.of:
-        terms = as_text(plain["objective"]["zernike"])
+        names = filter(None, map(zernike_name, objective.zernike.of))
+        terms = f"{as_text(plain['objective']['zernike'])} ({', '.join(names)})".replace(" ()", "")
         yield Asked(Ability.ZERNIKE, "objective.zernike", terms)
         aberration = Aberration(tuple(objective.zernike.of.items()))
         if not aberration.turned(mirrored_at(config.scene) or 0.0).even[1]:
@@ -135,6 +137,12 @@ def beyond_scheme(config: Config) -> Iterator[str]:
     scheme = SCHEMES[config.tracing.scheme]
     for ability, key, given in asked_of_scheme(config):
         if ability in scheme.honours:
+            continue
+        if ability is Ability.NO_CYLINDER:
+            yield (
+                f"{key}: {given} given, but the same material on both sides is no surface, and "
+                "there is nothing to be swept; give what is swept another medium"
+            )
             continue
         able = [name for name, other in SCHEMES.items() if ability in other.honours]
         instead = (

@@ -9,6 +9,7 @@ from pydantic import BaseModel
 from octsim.base.errors import ConfigError
 from octsim.config.abilities import beyond_scheme
 from octsim.config.fields import DECIMALS, Range
+from octsim.config.likely import light_remarks
 from octsim.config.models import Config, FocusLine
 from octsim.config.scene_checks import diameters_of, impossible_scene, least_index, scene_remarks
 from octsim.config.tree import impossible_tree
@@ -94,12 +95,15 @@ def impossible(config: Config) -> Iterator[str]:
             )
     key, focus = highest_focus(config)
     distance = config.objective.focus_distance
-    if shift := config.objective.focal_shift:
-        focus += shift.formula.highest(*sorted((band.min, band.max)))
+    by = ""
+    if (shift := config.objective.focal_shift) and shift.moves:
+        most = shift.formula.highest(*sorted((band.min, band.max)))
+        by, focus = f", of which objective.focal_shift is {most:.6g} um", focus + most
     if not distance > focus:
         yield (
             f"objective.focus_distance: {format_length(distance)} given; it must exceed every "
-            f"focus, and {key} asks for one at {format_length(focus)} (the objective lies in glass)"
+            f"focus, and {key} asks for one at {focus:.10g} um{by} (the objective lies in "
+            f"{config.scene.objective_medium})"
         )
 
 
@@ -207,6 +211,7 @@ def rounding_remarks(config: Config) -> list[str]:
 def plain_remarks(config: Config) -> list[str]:
     """Return what is possible but likely not meant, a line each, of a config without a grid."""
     said = [*_steep_remarks(config), *_budget_remarks(config), *scene_remarks(config)]
+    said += light_remarks(config)
     band, diameters = config.spectrum.wavelength, config.sweep.diameters
     k_min, k_max = 2 * math.pi / band.max, 2 * math.pi / band.min
     step = (diameters.stop - diameters.start) / (diameters.num - 1)

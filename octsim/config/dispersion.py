@@ -1,7 +1,6 @@
 """The refractive index of a medium, as a config has it: a number, a dispersion or a name."""
 
 import difflib
-import itertools
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -12,12 +11,13 @@ from pydantic import (
     Field,
     Tag,
     ValidationError,
-    model_validator,
 )
 
 from octsim.config.dispersion_files import read_indices
-from octsim.config.fields import Index, Number, Section, Wavelength, as_text, listed
-from octsim.config.units import format_length, parse_length
+from octsim.config.dispersion_forms import CauchyIndex, SellmeierIndex, TableIndex
+from octsim.config.fields import Index, Section, as_text
+from octsim.config.units import find_unit
+from octsim.config.wording import message_of
 from octsim.optics.materials import Cauchy, Constant, Material, Sellmeier, Table
 from octsim.optics.shipped_materials import SHIPPED
 
@@ -28,105 +28,11 @@ FORMS = (
     f"file.csv}} or the name of a material that octsim has: {', '.join(SHIPPED)}"
 )
 
-_Coefficients = Annotated[tuple[Number, ...], BeforeValidator(listed), Field(min_length=1)]
-
-
-class CauchyIndex(Section):
-    """Cauchy's formula, with the wavelength λ in vacuum."""
-
-    cauchy: Annotated[_Coefficients, Field(max_length=8)]
-    """A, B, C, … of n = A + B/λ² + C/λ⁴ + …, with λ in µm."""
-
-    @property
-    def material(self) -> Material:
-        """What it is as optics."""
-        return Cauchy(self.cauchy)
-
-
-class SellmeierCoefficients(Section):
-    """What Sellmeier's formula has."""
-
-    B: _Coefficients
-    C: _Coefficients
-    """µm²."""
-
-    @model_validator(mode="after")
-    def _pairs(self) -> "SellmeierCoefficients":
-        if len(self.B) != len(self.C):
-            raise ValueError(
-                f"B has {len(self.B)} numbers and C {len(self.C)}; give each B its C, in um^2"
-            )
-        return self
-
-
-class SellmeierIndex(Section):
-    """Sellmeier's formula, n² = 1 + Σ B λ²/(λ² − C), with the wavelength λ in vacuum, µm."""
-
-    sellmeier: SellmeierCoefficients
-
-    @property
-    def material(self) -> Material:
-        """What it is as optics."""
-        return Sellmeier(self.sellmeier.B, self.sellmeier.C)
-
-
-def _wavelength(value: object) -> object:
-    # the validator of a length, which comes next, reads text
-    bare = isinstance(value, int | float) and not isinstance(value, bool)
-    return f"{value!r} um" if bare else value
-
-
-def _increasing(values: tuple[float, ...]) -> tuple[float, ...]:
-    for row, (one, other) in enumerate(itertools.pairwise(values), 2):
-        if not one < other:
-            raise ValueError(
-                f"{format_length(other)} in row {row} is not above {format_length(one)} in the one "
-                "before; sort the rows by wavelength, each once"
-            )
-    return values
-
-
-class TableColumns(Section):
-    """Refractive indices at some wavelengths in vacuum."""
-
-    wavelength: Annotated[
-        tuple[
-            Annotated[Wavelength, BeforeValidator(_wavelength, json_schema_input_type=str | float)],
-            ...,
-        ],
-        BeforeValidator(listed),
-        Field(min_length=2),
-        AfterValidator(_increasing),
-    ]
-    n: Annotated[tuple[Index, ...], BeforeValidator(listed)]
-    kappa: (
-        Annotated[tuple[Annotated[Number, Field(ge=0, le=10)], ...], BeforeValidator(listed)] | None
-    ) = None
-
-    @model_validator(mode="after")
-    def _as_many(self) -> "TableColumns":
-        for name, column in (("n", self.n), ("kappa", self.kappa)):
-            if column is not None and len(column) != len(self.wavelength):
-                raise ValueError(
-                    f"{name} has {len(column)} numbers and wavelength {len(self.wavelength)}; give "
-                    "each wavelength one"
-                )
-        return self
-
-
-class TableIndex(Section):
-    """A table of refractive indices."""
-
-    table: TableColumns
-
-    @property
-    def material(self) -> Material:
-        """What it is as optics."""
-        return Table(self.table.wavelength, self.table.n, self.table.kappa or ())
-
 
 def _unit(unit: str) -> str:
-    parse_length(f"1 {unit}")
+    found = find_unit(unit)
+    if found is None or found.dimension != "length":
+        raise ValueError(f"{unit} is not a unit of length that is known; give one, as nm or um")
     return unit
 
 
@@ -143,15 +49,22 @@ def _inline(file: TableFile) -> TableIndex:
     rows = read_indices(file.table, file.unit)
     columns = {"wavelength": rows.wavelength, "n": rows.n, "kappa": rows.kappa}
     try:
-        return TableIndex.model_validate({"table": columns})
+        index = TableIndex.model_validate({"table": columns})
     except ValidationError as error:
         first = error.errors()[0]
         name, place = (*first["loc"][1:], "", "")[:2]
         where = f", row {rows.number[place]}" if isinstance(place, int) else ""
-        said = first["msg"].removeprefix("Value error, ").replace("Input should", "it should")
-        said = said.replace("Value should", "it should")
-        what = f"{name} {first['input']:g}: " if where else ""
+        what = ""
+        if isinstance(place, int):
+            given = columns[str(name)]
+            what = f"{name} {given[place] if given else 0:g}: "
+        said = message_of(first)
+        if name == "wavelength" and first["type"] == "less_than_equal":
+            what = what.replace(": ", " um: ")
+            said += f" um, and the unit is {rows.unit}; are these nm?"
         raise ValueError(f"{file.table}{where}: {what}{said}") from None
+    index.name_file(file.table)
+    return index
 
 
 def _shipped(name: str) -> str:
@@ -225,7 +138,7 @@ def described(index: float | str | Dispersion) -> str:
     """Write an index of a config on one line; of a table just where it is one."""
     if isinstance(index, TableIndex):
         first, last = index.table.wavelength[0], index.table.wavelength[-1]
-        return f"a table from {format_length(first)} to {format_length(last)}"
+        return f"{index.where} from {first:.10g} um to {last:.10g} um"
     if isinstance(index, Section):
         return as_text(index.model_dump(mode="json"))
     return str(index)

@@ -1,18 +1,32 @@
 """Files that hold refractive indices: a wavelength, n and maybe κ in each row."""
 
-import csv
 import re
-from pathlib import Path
 from typing import NamedTuple
 
+from octsim.config.table_text import Block, is_number, read_blocks
 from octsim.config.units import parse_length
 
 FORM = "write a first row as 'wavelength (nm),n' or 'wavelength (nm),n,kappa'"
 _WAVELENGTH = re.compile(
-    r"(?:wavelength|lambda|λ|wl)\s*_?\s*(?:\(\s*(.+?)\s*\)|\[\s*(.+?)\s*\]|([^\W\d_]+))?",
+    r"(?:wavelengths?|lambda|λ|wl|wvl)[\s_,/]*(?:in\s+)?"
+    r"(?:\(\s*(.+?)\s*\)|\[\s*(.+?)\s*\]|([^\W\d_]+))?",
     re.IGNORECASE,
 )
-_COLUMNS = {"n": "n", "kappa": "kappa", "k": "kappa", "κ": "kappa"}
+_N = (
+    "n", "refractiveindex", "index", "indexofrefraction", "nreal", "realn", "ren", "nre", "ri",
+    "refractiveindexn", "nrefractiveindex",
+)  # fmt: skip
+_KAPPA = (
+    "kappa", "k", "κ", "extinctioncoefficient", "extinction", "nimag", "imagn", "imn", "nim",
+    "extinctioncoefficientk", "kextinctioncoefficient", "extinctioncoefficientkappa",
+)  # fmt: skip
+_COLUMNS = dict.fromkeys(_N, "n") | dict.fromkeys(_KAPPA, "kappa")
+_KNOWN = (
+    "the headings that are known are wavelength, lambda or wl with its unit, n, n_real or "
+    "refractive index, and kappa, k or extinction coefficient"
+)
+_MICROMETRES = (0.01, 99.0)
+"""Between these are the wavelengths of refractiveindex.info, whose heading is wl alone, in µm."""
 
 
 class Rows(NamedTuple):
@@ -24,6 +38,8 @@ class Rows(NamedTuple):
     kappa: tuple[float, ...] | None
     number: tuple[int, ...]
     """Of each row in the file, counted from 1."""
+    unit: str
+    """Of the wavelengths in the file."""
 
 
 class _Heading(NamedTuple):
@@ -31,12 +47,16 @@ class _Heading(NamedTuple):
 
     columns: dict[str, int]
     unit: str | None
+    cells: int
+    """How many columns there are."""
 
 
 def read_indices(file: str, unit: str | None) -> Rows:
     """Read the refractive indices that a file holds.
 
-    Commas, semicolons or tabs stand between cells, and lines that begin with # are not read.
+    Commas, semicolons, tabs or blanks stand between cells, and numbers may have a decimal comma
+    where it is none of them. Lines that begin with # are remarks. A second block may hold κ, as
+    in the CSV files of refractiveindex.info.
 
     Parameters
     ----------
@@ -50,70 +70,86 @@ def read_indices(file: str, unit: str | None) -> Rows:
     ValueError
         If it can't be read or does not hold them; with the row, counted from 1.
     """
-    numbered = _cells(file)
-    if not numbered:
+    blocks = read_blocks(file, _is_heading)
+    if not blocks:
         raise ValueError(f"{file} holds nothing; {FORM}, and rows of numbers below")
-    _, cells = numbered[0]
-    headed = not _is_number(cells[0])
-    heading = _heading(file, cells) if headed else _by_order(file, len(cells))
-    said = heading.unit
+    headings = [_heading(file, block, later=bool(place)) for place, block in enumerate(blocks)]
+    said = headings[0].unit
     if said and unit and parse_length(f"1 {said}") != parse_length(f"1 {unit}"):
         raise ValueError(f"unit: {unit} is given, but {file} says {said}; leave one of them out")
-    if not (unit := unit or said):
+    if not (unit := unit or said or _by_convention(blocks[0])):
         raise ValueError(
             f"{file} does not say the unit of its wavelengths; {FORM}, or give the unit beside it, "
             f"as {{table: {file}, unit: nm}}"
         )
-    table = [_values(file, number, row, heading.columns, unit) for number, row in numbered[headed:]]
-    wavelength, n, kappa = zip(*table, strict=True) if table else ((), (), ())
-    numbers = tuple(number for number, _ in numbered[headed:])
-    return Rows(wavelength, n, kappa if "kappa" in heading.columns else None, numbers)
+    first, *others = (
+        [_values(file, number, row, heading, unit) for number, row in block.rows]
+        for block, heading in zip(blocks, headings, strict=True)
+    )
+    wavelength, n, kappas = zip(*first, strict=True) if first else ((), (), ())
+    kappa = kappas if "kappa" in headings[0].columns else None
+    for other in others:
+        if kappa is not None or tuple(row[0] for row in other) != wavelength:
+            raise ValueError(
+                f"{file} holds kappa twice, or at other wavelengths than n; give each wavelength "
+                "one of each"
+            )
+        kappa = tuple(row[2] for row in other)
+    numbers = tuple(number for number, _ in blocks[0].rows)
+    return Rows(wavelength, n, kappa, numbers, unit)
 
 
-def _cells(file: str) -> list[tuple[int, list[str]]]:
-    """Return the cells of each row that holds any, and its number."""
-    try:
-        text = Path(file).read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is not text"
-        raise ValueError(f"{file} can't be read ({reason}); give a CSV file") from None
-    lines = [
-        (number, line)
-        for number, line in enumerate(text.splitlines(), 1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
-    first = lines[0][1] if lines else ""
-    between = next((mark for mark in ";\t" if mark in first), ",")
-    rows = csv.reader((line for _, line in lines), delimiter=between)
-    return [
-        (number, [cell.strip() for cell in row])
-        for (number, _), row in zip(lines, rows, strict=False)
-    ]
+def _column(cell: str) -> str | None:
+    """Return what the column of a heading holds; None of another."""
+    if _WAVELENGTH.fullmatch(cell.strip()):
+        return "wavelength"
+    return _COLUMNS.get(re.sub(r"[\W_]+", "", cell.lower()))
 
 
-def _heading(file: str, cells: list[str]) -> _Heading:
+def _is_heading(cells: list[str]) -> bool:
+    found = set(map(_column, cells))
+    return "wavelength" in found and bool(found & {"n", "kappa"})
+
+
+def _by_convention(block: Block) -> str | None:
+    """Return the unit of the wavelengths of a heading that is just wl, as those of many files."""
+    if not block.heading or block.heading[0].lower() != "wl":
+        return None
+    first = [float(row[0]) for _, row in block.rows if is_number(row[0])]
+    least, most = _MICROMETRES
+    return "um" if all(least <= one <= most for one in first) else None
+
+
+def _heading(file: str, block: Block, *, later: bool) -> _Heading:
+    """Return what a block's heading says; a later block holds κ alone."""
+    cells = block.heading
+    if cells is None:
+        return _by_order(file, len(block.rows[0][1]))
     columns, unit = dict[str, int](), None
     for place, cell in enumerate(cells):
-        match = _WAVELENGTH.fullmatch(cell)
-        name = "wavelength" if match else _COLUMNS.get(cell.lower())
+        name = _column(cell)
         if name in columns:
             raise ValueError(f"{file} has two columns of {name}; leave one of them out")
         if name:
             columns[name] = place
-        if match:
+        if match := _WAVELENGTH.fullmatch(cell.strip()):
             unit = match[1] or match[2] or match[3]
-    for name in ("wavelength", "n"):
+    for name in ("wavelength", "kappa" if later else "n"):
         if name not in columns:
-            raise ValueError(f"{file} has no column of {name} by its first row; {FORM}")
+            found = ", ".join(f"'{cell}'" for cell in cells)
+            raise ValueError(
+                f"{file} has no column of {name} by its first row, {found}; {_KNOWN}; {FORM}"
+            )
     if unit:
         _require_length(file, unit)
-    return _Heading(columns, unit)
+    return _Heading(columns, unit, len(cells))
 
 
 def _by_order(file: str, count: int) -> _Heading:
     if count not in (2, 3):
         raise ValueError(f"{file} has {count} cells in its first row, and no headings; {FORM}")
-    return _Heading({"wavelength": 0, "n": 1} | ({"kappa": 2} if count == 3 else {}), None)
+    columns = {"wavelength": 0, "n": 1} | ({"kappa": 2} if count == 3 else {})
+    return _Heading(columns, None, count)
 
 
 def _require_length(file: str, unit: str) -> None:
@@ -124,22 +160,21 @@ def _require_length(file: str, unit: str) -> None:
 
 
 def _values(
-    file: str, number: int, row: list[str], columns: dict[str, int], unit: str
+    file: str, number: int, row: list[str], heading: _Heading, unit: str
 ) -> tuple[float, float, float]:
-    cells = {name: row[place] if place < len(row) else "" for name, place in columns.items()}
+    if any(row[heading.cells :]):
+        raise ValueError(
+            f"{file}, row {number}: {len(row)} cells, but {heading.cells} columns; with decimal "
+            "commas write semicolons between cells"
+        )
+    cells = {
+        name: row[place] if place < len(row) else "" for name, place in heading.columns.items()
+    }
     for name, cell in cells.items():
-        if not _is_number(cell):
+        if not is_number(cell):
             raise ValueError(
                 f"{file}, row {number}: {cell!r} is no {name}; each row has a number of each"
             )
     # as text, so that 650 nm is the same float as 0.65 um
     wavelength = parse_length(f"{cells['wavelength']} {unit}")
-    return wavelength, float(cells["n"]), float(cells.get("kappa", "0"))
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return "_" not in cell
+    return wavelength, float(cells.get("n", "nan")), float(cells.get("kappa", "0"))

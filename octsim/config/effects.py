@@ -1,6 +1,7 @@
 """The config's parts on what the thesis left out of the light's way: each is off by default."""
 
 import difflib
+import re
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Literal
 
@@ -30,20 +31,61 @@ REFERENCE_FORM = "it should be none, or {amplitude: 0.004, length: 9 um}"
 _NOTHING = {"type": "null"}
 
 
+_DIRECTIONS = {"x", "y", "oblique", "vertical", "horizontal"}
+
+
+def _families() -> dict[str, dict[int, str]]:
+    """Return the terms of each name without its direction, where it has several: their names."""
+    found: dict[str, dict[int, str]] = {}
+    for name, number in NAMES.items():
+        words = name.split()
+        family = " ".join(word for word in words if word not in _DIRECTIONS)
+        if family != name:
+            found.setdefault(family, {}).setdefault(number, name)
+    return {family: terms for family, terms in found.items() if len(terms) > 1}
+
+
+_FAMILIES = _families()
+_NAME_OF: Mapping[int, str] = {
+    **{number: name for name, number in reversed(list(NAMES.items()))},
+    **{number: name for terms in _FAMILIES.values() for number, name in terms.items()},
+}
+
+
+def zernike_name(number: int) -> str:
+    """Return what a Zernike term of Noll's number is called; nothing where it has no name."""
+    return _NAME_OF.get(number, "")
+
+
+def zernike_number(term: object) -> int:
+    """Return Noll's number of a term by that or by its name.
+
+    Raises
+    ------
+    ValueError
+        If there is none, or there are two.
+    """
+    text = " ".join(str(term).lower().replace("_", " ").replace("-", " ").split())
+    if text in _FAMILIES:
+        both = " or ".join(f"{name} ({number})" for number, name in _FAMILIES[text].items())
+        raise ValueError(f"{text} has a direction: write {both}")
+    whole = re.fullmatch(r"\s*[-+]?[0-9]+\s*", str(term))
+    number = int(str(term)) if whole else NAMES.get(text)
+    if number is None:
+        nearest = difflib.get_close_matches(text, NAMES, n=1, cutoff=0)[0]
+        raise ValueError(
+            f"{term!r} is no Zernike term that is known; the nearest is {nearest!r}, or give "
+            f"Noll's number, 1 to {MOST}"
+        )
+    if not 1 <= number <= MOST:
+        raise ValueError(f"{number} is none of Noll's numbers that are known, 1 to {MOST}")
+    return number
+
+
 def _numbered(given: Mapping[object, object]) -> Iterator[tuple[int, object]]:
     """Return Noll's number of each term, and its coefficient."""
     for term, coefficient in given.items():
-        text = " ".join(str(term).lower().replace("_", " ").replace("-", " ").split())
-        number = NAMES.get(text, int(text) if text.isdecimal() else None)
-        if number is None:
-            nearest = difflib.get_close_matches(text, NAMES, n=1, cutoff=0)[0]
-            raise ValueError(
-                f"{term!r} is no Zernike term that is known; the nearest is {nearest!r}, or give "
-                f"Noll's number, 1 to {MOST}"
-            )
-        if isinstance(term, bool) or not 1 <= number <= MOST:
-            raise ValueError(f"{term} is none of Noll's numbers that are known, 1 to {MOST}")
-        yield number, coefficient
+        yield zernike_number(term), coefficient
 
 
 def _terms(given: object) -> object:

@@ -1,6 +1,7 @@
 """What the config's sections are made of: numbers, lengths and ranges with their limits."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from datetime import date
 from typing import TYPE_CHECKING, Annotated, Any
 
 import yaml
@@ -30,9 +31,25 @@ def as_tuple(value: object) -> object:
 
 def listed(value: object) -> object:
     """Return a list as a tuple; of anything else say that it is none."""
-    if not isinstance(value, list | tuple):
+    plain = plain_data(value)
+    if not isinstance(plain, list | tuple):
         raise ValueError("it should be a list")  # noqa: TRY004
-    return tuple(value)
+    return tuple(plain)
+
+
+def plain_data(value: Any) -> Any:
+    """Return lists and numbers in the place of arrays, other sequences and numpy's numbers."""
+    if isinstance(value, Mapping):
+        return {key: plain_data(part) for key, part in value.items()}
+    if isinstance(value, BaseModel | str | bytes | int | float) and not hasattr(value, "dtype"):
+        return value
+    if hasattr(value, "__array__"):
+        import numpy as np  # here, as reading a config takes half as long without
+
+        return np.asarray(value).tolist()
+    if isinstance(value, Sequence):
+        return [plain_data(part) for part in value]
+    return value
 
 
 def absent(value: object) -> object:
@@ -43,9 +60,19 @@ def absent(value: object) -> object:
 def as_text(value: Any) -> str:
     """Write a value of the config as a user would."""
     if isinstance(value, Mapping | list | tuple | bool) or value is None:
-        text: str = yaml.safe_dump(value, default_flow_style=True, width=10_000)
+        text: str = yaml.safe_dump(_plain(value), default_flow_style=True, width=10_000)
         return text.removesuffix("...\n").strip()
     return str(value)
+
+
+def _plain(value: Any) -> Any:
+    """Return what YAML can write, with numbers where they are keys as text."""
+    if isinstance(value, Mapping):
+        numbers = {key: int(key) for key in value if isinstance(key, str) and key.isdecimal()}
+        return {numbers.get(key, key): _plain(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(part) for part in value]
+    return value if isinstance(value, str | int | float | date) or value is None else str(value)
 
 
 Number = Annotated[float, BeforeValidator(number), Field(allow_inf_nan=False)]

@@ -13,10 +13,11 @@ from octsim.base.errors import ConfigError
 from octsim.config.checks import impossible
 from octsim.config.derive import config_at, overlap, part_of
 from octsim.config.fields import evenly
-from octsim.config.grid import FIXED, as_text, axes, combinations, value_at
-from octsim.config.messages import explain, known_keys, nearest_key
+from octsim.config.grid import as_text, axes, combinations, value_at
+from octsim.config.grid_keys import plain_key, require_varied
+from octsim.config.messages import explain, known_keys
 from octsim.config.models import Config, Grid
-from octsim.config.units import ANGLE, LENGTH, Quantity, parse
+from octsim.config.units import ANGLE, ATTENUATION, LENGTH, RATIO, Quantity, parse
 
 MOST = 100_000
 """Combinations of one grid."""
@@ -32,7 +33,12 @@ def expanded(config: Config) -> Config:
         If a key is unknown or can't be varied, its values are none or wrong, or a combination is
         impossible. One line for each problem.
     """
-    listed = {key: _listed(config, key, given) for key, given in config.grid.varied.items()}
+    listed: dict[str, list[Any]] = {}
+    for given_key, values in config.grid.varied.items():
+        key = plain_key(given_key)
+        if key in listed:
+            raise ConfigError(f"grid.{given_key}: given beside grid.{key}, and both set the same")
+        listed[key] = _listed(config, key, values)
     _check_keys(config, listed)
     given = config.model_copy(update={"grid": _grid(config, listed)})
     problems: dict[str, None] = {}
@@ -79,13 +85,7 @@ def _raise(problems: Mapping[str, None]) -> None:
 def _listed(config: Config, key: str, given: Any) -> list[Any]:
     """Write out the values of one key."""
     known = set(known_keys(config))
-    if key not in known:
-        raise ConfigError(
-            f"grid.{key}: unknown key; write it with dots, as in detector.core_diameter: [...]; "
-            f"the nearest known one is {nearest_key(key)}"
-        )
-    if key.split(".")[0] in FIXED:
-        raise ConfigError(f"grid.{key}: can't be varied; a run has one")
+    require_varied(config, key)
     if isinstance(given, list | tuple):
         if not given:
             raise ConfigError(f"grid.{key}: [] given; list one value or more")
@@ -146,7 +146,7 @@ def _spaced(key: str, given: Mapping[str, Any]) -> list[Any]:
 
 def _quantity(ends: list[Any]) -> Quantity | None:
     """Return what both ends of a range are, if they have units."""
-    for quantity in (LENGTH, ANGLE):
+    for quantity in (LENGTH, ANGLE, ATTENUATION, RATIO):
         with contextlib.suppress(ValueError):
             for end in ends:
                 parse(quantity, end)

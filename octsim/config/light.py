@@ -1,5 +1,6 @@
 """The config's sections on the light: the objective with its pupil, and the polarisation."""
 
+import difflib
 from collections.abc import Mapping
 from math import pi
 from typing import Annotated, Literal
@@ -26,9 +27,17 @@ class FibreMode(Section):
     """Mode-field diameter, seen at the magnification, µm."""
 
 
+PUPIL_FORM = "it should be uniform, {gaussian: 1.0} or {fibre: 5 um}, or null"
+_PUPILS = ("gaussian", "fibre")
+
+
 def _pupil(value: object) -> object:
-    if isinstance(value, Mapping) and {"gaussian", "fibre"} <= value.keys():
+    if isinstance(value, Mapping) and value.keys() >= set(_PUPILS):
         raise ValueError("it should be one of the two")
+    if isinstance(value, Mapping) and not (set(_PUPILS) & value.keys()):
+        near = (difflib.get_close_matches(str(key).lower(), _PUPILS, n=1) for key in value)
+        told = [f"the nearest that is known is {name}; " for names in near for name in names]
+        raise ValueError(f"{''.join(told[:1])}{PUPIL_FORM}")
     return absent(value)
 
 
@@ -80,11 +89,22 @@ class Objective(Section):
 
 _TURN = 2 * pi
 _STATES = ("unpolarised", "left", "right")
+_ALONG = {
+    **dict.fromkeys(("x", "h", "horizontal"), "0 deg, along x"),
+    **dict.fromkeys(("y", "v", "vertical"), "90 deg, along y"),
+    "linear": "an angle from x to y, such as 0 deg",
+    "circular": "left or right",
+    "unpolarized": "unpolarised",
+}
 
 
 def _state(value: object) -> object:
     if value in _STATES:
         return value
+    if along := _ALONG.get(str(value).lower()):
+        raise ValueError(
+            f"it should be an angle as 30 deg, unpolarised, left or right; did you mean {along}?"
+        )
     try:
         return _direction(value)
     except ValueError as error:
@@ -94,6 +114,8 @@ def _state(value: object) -> object:
 def _direction(value: object) -> float | None:
     if absent(value) is None:
         return None
+    if along := _ALONG.get(str(value).lower()):
+        raise ValueError(f"it should be an angle as 30 deg; did you mean {along}?")
     angle = parse_angle(value)
     if abs(angle) > _TURN:
         raise ValueError("it should be within a turn, -360 deg to 360 deg")

@@ -1,5 +1,6 @@
 """From a user's overlay to a checked config, or to one clear line for each problem."""
 
+import re
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,6 +11,7 @@ import yaml
 from octsim.base.errors import ConfigError, OctsimWarning
 from octsim.config.checks import require_possible
 from octsim.config.derive import merge, overlaid, validated
+from octsim.config.fields import plain_data
 from octsim.config.grid import remarks
 from octsim.config.grid_values import expanded
 from octsim.config.models import Config
@@ -63,6 +65,31 @@ def read_overlay(path: Path) -> Mapping[str, Any]:
     return content
 
 
+_AFTER_COMMA = re.compile(r"[0-9]+( ?[^\W\d]\S*)?")
+
+
+def require_points(given: Any, prefix: str = "") -> None:
+    """Refuse what YAML makes of a decimal comma in braces: 1 for a key, and 39 as the next key.
+
+    Raises
+    ------
+    ConfigError
+        If there is one.
+    """
+    before: tuple[Any, Any] | None = None
+    if isinstance(given, list):
+        given = dict(enumerate(given))
+    for key, value in given.items() if isinstance(given, Mapping) else ():
+        if before and value is None and _AFTER_COMMA.fullmatch(str(key)):
+            name, whole = before
+            if isinstance(whole, int) and not isinstance(whole, bool):
+                raise ConfigError(
+                    f"{prefix}{name}: {whole},{key} given; write it with a point, as {whole}.{key}"
+                )
+        require_points(value, f"{prefix}{key}.")
+        before = key, value
+
+
 def load_config(*overlays: str | Path | Mapping[str, Any]) -> Config:
     """Lay overlays over the thesis's config and check the result.
 
@@ -106,6 +133,8 @@ def load_and_tell(*overlays: str | Path | Mapping[str, Any]) -> tuple[Config, li
     asked: dict[str, Any] = {}
     for overlay in overlays:
         own = overlay if isinstance(overlay, Mapping) else read_overlay(Path(overlay))
+        own = plain_data(own)
+        require_points(own)
         asked |= asked_for(own, given)
         given = merge(given, own)
     config = validated(overlaid(Config().to_dict(), given))

@@ -16,10 +16,14 @@ from octsim.config.effects import (
     REFERENCE_FORM,
     FocalShiftConfig,
     ReferenceArmConfig,
+    zernike_name,
 )
+from octsim.config.fields import as_text
+from octsim.config.light import PUPIL_FORM
 from octsim.config.models import FIXED, Config, FocusLine, Grid
 from octsim.config.scene import Layer, Shell
-from octsim.config.units import ANGLE, LENGTH
+from octsim.config.units import ANGLE, ATTENUATION, LENGTH
+from octsim.config.wording import message_of
 
 
 def known_keys(model: type[BaseModel] | BaseModel = Config, prefix: str = "") -> Iterator[str]:
@@ -87,6 +91,7 @@ def nearest_key(key: str) -> str:
 _OF_DISPERSIONS = (
     "cauchy", "sellmeier", "table", "unit", "B", "C", "wavelength", "n", "kappa",
 )  # fmt: skip
+_DECIMAL_COMMA = re.compile(r"\s*[-+]?[0-9]+,[0-9]+\s*")
 _LONGEST = 300
 _OF_TWO_KINDS = (
     ["sweep", "focus"],
@@ -116,7 +121,7 @@ def explain(error: ErrorDetails) -> str:
     key = next((name for name in (place[-1], path) if name in set(known_keys())), None)
     if varies and key and entry not in _LISTS:
         return (
-            f"{path}: {error['input']!r} given; several values of one key stand in the grid: "
+            f"{path}: {_shown(error['input'])} given; several values of one key stand in the grid: "
             f"write grid: {{{key}: [...]}}"
         )
     if "." in place[-1] and error["type"] == "extra_forbidden":
@@ -135,8 +140,10 @@ def explain(error: ErrorDetails) -> str:
         return f"{path}: unknown key; {remedy}"
     if error["type"] == "missing":
         return f"{path}: missing; it has no default, so give it a value"
-    message = error["msg"].removeprefix("Value error, ").replace("Input should", "it should")
-    message = message.replace("Value should", "it should")
+    if error["type"] == "invalid_key":
+        section = f"{'.'.join(place[:-1])}: " if place[1:] else ""
+        return f"{section}{place[-1]} given as a key; keys are names, such as scene"
+    message = message_of(error)
     if path == "run":
         message = (
             "it should be a plain name as text: letters, digits, '.', '_' and '-', no path, 100 at "
@@ -159,8 +166,8 @@ def explain(error: ErrorDetails) -> str:
         message = _FORMS[path]
     elif error["type"] in {"model_type", "model_attributes_type"}:
         message = "it should be a mapping of keys to values"
-    elif path == "objective.pupil":
-        message = "it should be uniform, {gaussian: 1.0} or {fibre: 5 um}, or null"
+    elif path == "objective.pupil" and error["type"] != "value_error":
+        message = PUPIL_FORM
     elif error["type"] == "string_pattern_mismatch" and path.startswith("scene."):
         message = "it should be a plain name: letters, digits, '_' and '-', a letter first"
     elif path == "sweep.focus":
@@ -177,22 +184,29 @@ def explain(error: ErrorDetails) -> str:
             f"it should be a{whole} number, written out as digits and without quotes, in a config "
             "file: in braces on the command line it is text"
         )
+        if _DECIMAL_COMMA.fullmatch(error["input"]):
+            message = f"write it with a point, as {error['input'].strip().replace(',', '.')}"
     elif error["type"] == "int_type":
         message = "it should be a whole number, written out as digits"
     elif error["type"] in {"greater_than_equal", "less_than_equal"} and unit_of(path) != "1":
-        message += f" {unit_of(path)}"
-    return f"{path}: {_shown(error['input'])} given; {message}"
+        message += f" {unit_of(path).removeprefix('1')}"
+    named = ""
+    if entry == "objective.zernike" and place[-1].isdecimal():
+        named = f" ({name})" if (name := zernike_name(int(place[-1]))) else ""
+    return f"{path}: {_shown(error['input'])} given{named}; {message}"
 
 
 def _shown(value: object) -> str:
     """Write what was given; of a long table its start."""
-    text = repr(value)
+    text = repr(value) if isinstance(value, str) else as_text(value)
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]} …"
 
 
 def unit_of(key: str) -> str:
     """Return the unit of a key of the config: um of a length, rad of an angle, else 1."""
     entry = _of_any_entry(key)
+    if entry.startswith("scene.attenuation."):
+        return ATTENUATION.unit
     if entry in _WITHOUT_DEFAULT:
         return _WITHOUT_DEFAULT[entry]
     value: Any = Config().to_dict()
@@ -207,7 +221,7 @@ _WITHOUT_DEFAULT = {
     "sweep.focus.intercept": LENGTH.unit, "objective.pupil.fibre": LENGTH.unit,
     "scene.cylinders.diameter": LENGTH.unit, "scene.cylinders.gap": LENGTH.unit,
     "scene.cylinders.shells.thickness": LENGTH.unit, "scene.layers.thickness": LENGTH.unit,
-    "objective.focal_shift.reference": LENGTH.unit,
+    "objective.focal_shift.reference": LENGTH.unit, "objective.zernike": LENGTH.unit,
     "interferometer.reference.length": LENGTH.unit, "beam.waist": LENGTH.unit,
     "beam.wavelength": LENGTH.unit, "detector.mode_field_diameter": LENGTH.unit,
     "polarisation.input": ANGLE.unit, "polarisation.analyser": ANGLE.unit,

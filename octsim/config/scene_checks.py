@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from octsim.config.dispersion import described, material_of, span_of
+from octsim.config.dispersion_forms import TableIndex
 from octsim.config.models import Config
 from octsim.config.scene import SWEPT, CylinderConfig, SceneConfig
 from octsim.config.units import format_length
@@ -15,9 +16,7 @@ from octsim.schemes.table import SCHEMES
 
 _THESIS = ("glass", "water", "neuron")
 _TRIED = 128  # steps over the band in which an index is looked at
-_PISTON = 1
 _CONTACT = 1e-12  # relative rounding of lengths of bodies that touch
-_SMALL_RMS = 5e-3  # µm
 
 
 def impossible_scene(config: Config) -> Iterator[str]:
@@ -71,10 +70,12 @@ def _indices(config: Config) -> Iterator[str]:
         key, index = f"scene.refractive_index.{medium}", given[medium]
         material, span = material_of(index), span_of(index)
         if span and not (span[0] <= shortest and longest <= span[1]):
+            told = f", which is known from {span[0]:.10g} um to {span[1]:.10g} um"
+            of_table = isinstance(index, TableIndex)
             yield (
-                f"{key}: {described(index)} given, which is known from {format_length(span[0])} to "
-                f"{format_length(span[1])}, but spectrum.wavelength is from "
-                f"{format_length(shortest)} to {format_length(longest)}; give a dispersion that "
+                f"{key}: {described(index)} given{'' if of_table else told}, but "
+                f"spectrum.wavelength is from {shortest:.10g} um to {longest:.10g} um; "
+                f"{_meant(span, shortest, longest) if of_table else ''}give a dispersion that "
                 "spans the band, or a narrower band"
             )
         elif material.dispersive and (wrong := _impossible_index(material, shortest, longest)):
@@ -83,6 +84,16 @@ def _indices(config: Config) -> Iterator[str]:
                 f"{key}: {described(index)} given, whose index is {found:.6g} at "
                 f"{wavelength:.6g} um, in the band; it should be from 1 to 10 (wavelengths in um)"
             )
+
+
+def _meant(span: tuple[float, float], shortest: float, longest: float) -> str:
+    """Guess which unit the wavelengths of a table are in that is far from the band."""
+    if span[0] < longest and span[1] > shortest:
+        return ""
+    for by, guess in ((1e-3, "nm, not um"), (1e3, "um, not nm"), (0.1, "angstrom, not nm")):
+        if max(span[0] * by, shortest) < min(span[1] * by, longest):
+            return f"are these {guess}? "
+    return ""
 
 
 def _impossible_index(
@@ -244,7 +255,6 @@ def scene_remarks(config: Config) -> Iterator[str]:
             )
         if cylinder.elevation:
             yield _met(config, key, cylinder)
-    yield from _aberration_remarks(config)
     aperture, index = config.objective.numerical_aperture, config.host_index
     rays = SCHEMES[config.tracing.scheme].light == "rays"
     if index < aperture and rays and not config.polarisation.given:
@@ -253,20 +263,6 @@ def scene_remarks(config: Config) -> Iterator[str]:
             f"{index}, with polarisation.input: none: the thesis's split makes light off the plane "
             "too bright where the focus is off the law; give polarisation.input: unpolarised"
         )
-
-
-def _aberration_remarks(config: Config) -> Iterator[str]:
-    objective = config.objective
-    by_rays = SCHEMES[config.tracing.scheme].light == "rays"
-    if not by_rays or objective.zernike_rays != "normal":
-        return
-    for number, rms in objective.zernike.of.items():
-        if number != _PISTON and abs(rms) > _SMALL_RMS:
-            yield (
-                f"objective.zernike.{number}: {format_length(rms)} moves rays by less than the "
-                "diffraction spot, and they exaggerate it, as the detector cuts by position; "
-                "compare with tracing.scheme: fullwave"
-            )
 
 
 def _met(config: Config, key: str, cylinder: CylinderConfig) -> str:

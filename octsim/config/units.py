@@ -67,6 +67,7 @@ _INVERSE = re.compile(r"(?:1|rad)\s*/\s*(\S+)|(\S+?)\s*(?:\^|\*\*)?\s*-1")
 _PER = re.compile(r"([^\W\d_]+)\s*/\s*([^\W\d_]+?)((?:(?:\^|\*\*)?2|²)?)")
 _NUMBER_PATTERN = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _NUMBER = re.compile(rf"\s*{_NUMBER_PATTERN}\s*")
+_COMMA = re.compile(r"^(\s*[-+]?[0-9]+),([0-9]+)")
 _QUANTITY = re.compile(rf"\s*({_NUMBER_PATTERN})\s*([^\W\d_]\S*|[°%]|\s1?/\S+)\s*")
 
 
@@ -146,6 +147,12 @@ PER_LENGTH = Quantity(
 )  # fmt: skip
 
 
+_LENGTHS = {
+    "length": "a length", "inverse length": "an inverse length", "ratio": "a length per length",
+}  # fmt: skip
+"""Dimensions that are easily taken for each other, with their articles."""
+
+
 def parse(quantity: Quantity, text: object) -> float:
     """Read a quantity such as ``"5 nm"``.
 
@@ -176,6 +183,9 @@ def parse(quantity: Quantity, text: object) -> float:
 def _parsed(quantity: Quantity, text: str) -> float:
     match = _QUANTITY.fullmatch(text)
     if match is None:
+        pointed = _COMMA.sub(r"\1.\2", text)
+        if pointed != text and _QUANTITY.fullmatch(pointed):
+            raise ValueError(f"write it with a point, as {pointed.strip()}")
         raise ValueError(_unreadable(quantity, bare=_NUMBER.fullmatch(text) is not None))
     number, name = match[1], match[2].strip()
     name = f"1{name}" if name.startswith("/") else name
@@ -184,6 +194,12 @@ def _parsed(quantity: Quantity, text: str) -> float:
         nearest = _nearest(quantity, name)
         meant = f"; did you mean '{nearest}'?" if nearest else ""
         raise ValueError(f"'{name}' is not a unit that is known{meant}; {quantity.remedy}")
+    dimensions = {unit.dimension, quantity.dimension}
+    if len(dimensions) > 1 and dimensions <= _LENGTHS.keys() and name not in {"%", "percent"}:
+        raise ValueError(
+            f"{number} {match[2].strip()} is {_LENGTHS[unit.dimension]}; give "
+            f"{_LENGTHS[quantity.dimension]}, as {quantity.examples[0]}"
+        )
     if unit.dimension != quantity.dimension:
         raise ValueError(f"'{name}' is not a unit of {quantity.dimension}; {quantity.remedy}")
     try:

@@ -124,10 +124,12 @@ def unread_scene(config: Config, asked: Mapping[str, Any]) -> list[str]:
                 "it out, or name it in scene.layers or scene.cylinders"
             )
         if key == "scene.gap" and not gaps:
-            said.append(
-                f"{given}: {as_text(value)} given, but each cylinder has a gap of its own; leave "
-                "one of them out"
+            why = (
+                "each cylinder has a gap of its own; leave one of them out"
+                if any(one.scene.cylinders for one in every)
+                else "there is no cylinder, so nothing reads it; leave it out"
             )
+            said.append(f"{given}: {as_text(value)} given, but {why}")
         needed, off = _NEEDED.get(key, ("", None))
         if needed and value != off and not any(_has(one, needed) for one in every):
             said.append(

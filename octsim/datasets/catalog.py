@@ -12,6 +12,7 @@ digests, the axes of a grid, the archive and the command line all read this tabl
 from collections.abc import Mapping
 
 from octsim.config.models import Config
+from octsim.datasets.catalog_of_neurons import CALIBRATED, COMPARED, OF_NEURONS
 from octsim.datasets.catalog_of_thesis import OF_THE_THESIS
 from octsim.datasets.stage import COUNTED, LIGHT, RAYS, SUMMING, Figure, Stage
 from octsim.schemes.table import SCHEMES
@@ -21,13 +22,6 @@ def _rows(light: str, config: Config, rows: int) -> int:
     """Return how many rows a stage traces that is for schemes of one kind of light."""
     return rows if SCHEMES[config.tracing.scheme].light == light else 0
 
-
-_COMPARED = ("scene", "objective", "detector", "tracing", "spectrum", "sweep", "processing")
-# of spectra as accurate as small steps need, whatever the run's scheme
-_CALIBRATED = (
-    "tracing.min_amplitude", "scene", "objective", "detector", "tracing.max_intersections",
-    "polarisation", "spectrum", "processing", "calibration", "sweep.focus",
-)  # fmt: skip
 
 _RUN = (
     Stage(
@@ -154,7 +148,7 @@ _BESIDE = (
     Stage(
         "tradeoff", "octsim.studies.tradeoff.study:tradeoff",
         "Measure error and cost, one setting after the other",
-        reads=(*_COMPARED, "polarisation", "focus_law"), beside=True,
+        reads=(*COMPARED, "polarisation", "focus_law"), beside=True,
         summary="octsim.studies.tradeoff.study:summary",
         figures=(
             Figure("tradeoff", "octsim.figures.tradeoff:tradeoff_figure",
@@ -166,7 +160,7 @@ _BESIDE = (
     Stage(
         "validity", "octsim.studies.validity.study:validity",
         "Compare rays with Maxwell's equations, one quantity varied at a time",
-        reads=(*_COMPARED, "polarisation"), after=("focus_law",), beside=True,
+        reads=(*COMPARED, "polarisation"), after=("focus_law",), beside=True,
         plates=True, summary="octsim.studies.validity.study:summary",
         figures=(
             Figure("validity", "octsim.figures.validity:validity_figure",
@@ -189,7 +183,7 @@ _BESIDE = (
     Stage(
         "estimators", "octsim.studies.estimators.study:estimators",
         "Compare the estimators of the phase",
-        reads=_COMPARED, after=("focus_law",), beside=True,
+        reads=COMPARED, after=("focus_law",), beside=True,
         summary="octsim.studies.estimators.study:summary",
         figures=(
             Figure("estimators", "octsim.figures.estimators:estimators_figure",
@@ -199,25 +193,12 @@ _BESIDE = (
     Stage(
         "calibration", "octsim.studies.calibration.study:calibration",
         "Differentiate the phase over the diameter at a fixed focus and gap",
-        reads=_CALIBRATED, after=("focus_law",), beside=True,
+        reads=CALIBRATED, after=("focus_law",), beside=True,
         summary="octsim.studies.calibration.told:summary",
         doubts="octsim.studies.calibration.told:doubts",
         figures=(
             Figure("calibration", "octsim.figures.calibration:calibration_figure",
                    "phase slope at a fixed focus, and what makes its error"),
-        ),
-    ),
-    Stage(
-        "responses", "octsim.studies.responses.study:responses",
-        "Differentiate phases and spectra by all that may change in a neuron",
-        reads=(*_CALIBRATED, "responses", "expansion.diameter", "expansion.bands",
-               "action_potential.photons", "action_potential.seed"),
-        after=("focus_law",), beside=True,
-        summary="octsim.studies.responses.told:summary",
-        doubts="octsim.studies.responses.told:doubts",
-        figures=(
-            Figure("responses", "octsim.figures.responses:responses_figure",
-                   "phase responses to all that may change, and what tells them apart"),
         ),
     ),
     Stage(
@@ -235,7 +216,7 @@ _BESIDE = (
     Stage(
         "action_potential", "octsim.studies.calibration.action_potential:action_potential",
         "Simulate an action potential and recover it",
-        reads=(*_CALIBRATED, "action_potential"), after=("calibration", "focus_law"),
+        reads=(*CALIBRATED, "action_potential"), after=("calibration", "focus_law"),
         beside=True,
         summary="octsim.studies.calibration.action_potential:summary",
         figures=(
@@ -247,7 +228,7 @@ _BESIDE = (
     Stage(
         "detector", "octsim.studies.detector.study:detector",
         "Compare falloffs and radii of the detector",
-        reads=(*_COMPARED, "polarisation", "beam", "interferometer"), after=("focus_law",),
+        reads=(*COMPARED, "polarisation", "beam", "interferometer"), after=("focus_law",),
         beside=True,
         summary="octsim.studies.detector.recommended:summary",
         doubts="octsim.studies.detector.recommended:doubts",
@@ -268,17 +249,7 @@ _BESIDE = (
                    "what each effect changes of the phase slope and the spectrum, and its cost"),
         ),
     ),
-    Stage(
-        "scenes", "octsim.studies.scenes.study:scenes",
-        "Compare scenes about the configured one: myelin, membranes, neighbours, a tilt, a cover",
-        reads=(*_COMPARED, "beam", "polarisation", "interferometer"), after=("focus_law",),
-        beside=True,
-        summary="octsim.studies.scenes.study:summary",
-        figures=(
-            Figure("scenes", "octsim.figures.scenes:scenes_figure",
-                   "what myelin, membranes, neighbours, a tilt and a cover glass do to the slope"),
-        ),
-    ),
+    *OF_NEURONS,
     Stage(
         "design", "octsim.studies.design.study:design",
         "Search fill, focus, aperture and band for the least error of an expansion",

@@ -11,7 +11,8 @@ from octsim.datasets.stage import LIGHT, RAYS, SUMMING, Figure
 from octsim.schemes.table import COUNTED_RAYS, LIGHT_PATHS, SCHEMES
 
 NO_RESULT = (
-    "octsim.config.archive", "octsim.datasets.catalog", "octsim.datasets.catalog_of_thesis",
+    "octsim.config.archive", "octsim.datasets.catalog", "octsim.datasets.catalog_of_neurons",
+    "octsim.datasets.catalog_of_thesis",
     "octsim.datasets.gallery",
     "octsim.datasets.stage",
     "octsim.instrument.point_store", "octsim.instrument.points", "octsim.schemes.cost",

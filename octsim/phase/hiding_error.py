@@ -9,9 +9,7 @@ _NOTHING = 1.0
 """Error, over the largest intensity, of counted rays that are nothing but chance."""
 
 
-def hiding_error(
-    error: NDArray[np.float64], status: NDArray[np.integer]
-) -> NDArray[np.float64]:
+def hiding_error(error: NDArray[np.float64], status: NDArray[np.integer]) -> NDArray[np.float64]:
     """Return the errors (D,) that a fringe has to be above, over the largest intensity.
 
     Counted rays are off by about the same at all wavenumbers, so that their fringe can be far

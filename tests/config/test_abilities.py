@@ -15,12 +15,12 @@ NEURON: dict[str, Any] = {"medium": "neuron"}
 SOME: list[tuple[str, dict[str, Any], str, str]] = [
     ("paths", {"beam": {"waist": "diffraction"}}, "beam.waist: diffraction given, but {} has rays that meet in the focus", "vogel"),
     ("paths", {"detector": {"falloff": "fibre"}}, "detector.falloff: fibre given, but {} does not weigh by a falloff without an edge", "vogel"),
-    ("paths", {"objective": {"zernike": {7: "1 nm"}}}, "objective.zernike: {'7': 0.001 um} given, but {} needs an aberration that is even along", "vogel"),
-    ("fullwave", {"objective": {"zernike": {5: "1 nm"}}}, "objective.zernike: {'5': 0.001 um} given, but {} needs an aberration that is even along", "vogel"),
+    ("paths", {"objective": {"zernike": {7: "1 nm"}}}, "objective.zernike: {7: 0.001 um} (coma y) given, but {} needs an aberration that is even along", "vogel"),
+    ("fullwave", {"objective": {"zernike": {5: "1 nm"}}}, "objective.zernike: {5: 0.001 um} (astigmatism oblique) given, but {} needs an aberration that is even along", "vogel"),
     ("fullwave", {"detector": {"falloff": "top_hat"}}, "detector.falloff: top_hat given, but {} does not weigh by a falloff", "vogel or paths"),
     ("fullwave", {"detector": {"falloff": "fibre"}}, "detector.falloff: fibre given, but {} does not weigh by a falloff", "vogel"),
     ("fullwave", {"beam": {"waist": "0.1 um"}}, "beam.waist: 0.1 um given, but {} has rays that meet in the focus", "vogel"),
-    ("fullwave", {"scene": {"attenuation": {"water": "1 /cm"}}}, "scene.attenuation.water: 0.0001 /um given, but {} has no attenuation around the cylinder", "vogel or paths"),
+    ("fullwave", {"scene": {"attenuation": {"water": "1 /cm"}}}, "scene.attenuation.water: 1 /cm given, but {} has no attenuation around the cylinder", "vogel or paths"),
 ]  # fmt: skip
 EVERY: list[dict[str, Any]] = [
     {"objective": {"pupil": {"gaussian": 1}}},

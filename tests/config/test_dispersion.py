@@ -8,6 +8,8 @@ from math import pi
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import pandas as pd
 import pytest
 
 from octsim.base.errors import ConfigError
@@ -15,6 +17,7 @@ from octsim.config.abilities import as_far_as, asked_of_scheme
 from octsim.config.checks import impossible as all_impossible
 from octsim.config.derive import merge, nested, validated
 from octsim.config.dispersion import moved
+from octsim.config.load import load_config
 from octsim.config.messages import known_keys
 from octsim.config.models import Config
 from octsim.config.scene_checks import impossible_scene
@@ -83,6 +86,19 @@ def test_indices_are_those_of_the_middle_of_the_band() -> None:
         ("600, 1.4\n750, 1.39\n950, 1.38\n", {"unit": "nm"}),
         ("\ufeffwavelength,n\n600,1.4\n7.5e2,1.39\n950,1.38\n", {"unit": "nm"}),
         ("wavelength (um),n\n0.6,1.4\n0.75,1.39\n0.95,1.38\n", {"unit": "um"}),
+        ("wl,n\n0.6,1.4\n0.75,1.39\n0.95,1.38\n", {}),
+        ("Wavelength, nm,Refractive Index\n600,1.4\n750,1.39\n950,1.38\n", {}),
+        ('"Wavelength, nm","n_real"\n600,1.4\n750,1.39\n950,1.38\n', {}),
+        ("Wavelength, nm\tRefractive Index\n600\t1.4\n750\t1.39\n950\t1.38\n", {}),
+        ("lambda/nm n(real)\n600 1.4\n750 1.39\n950 1.38\n", {}),
+        ("Wavelength (nm)  Refractive Index\n600   1.4\n750  1.39\n950  1.38\n", {}),
+        ("wavelength_nm refractive index\n600 1.4\n750 1.39\n950 1.38\n", {}),
+        ("# wavelength [nm] n\n600 1.4\n750 1.39\n950 1.38\n", {}),
+        ("# of ours\n# wavelength (nm), n\n600 1.4\n750 1.39\n950 1.38\n", {}),
+        ("wavelength in nm;n\n600;1,4\n750;1,39\n950;1,38\n", {}),
+        ("wl (um);n\n0,6;1,4\n0,75;1,39\n0,95;1,38\n", {}),
+        ("0,6 1,4\n0,75 1,39\n0,95 1,38\n", {"unit": "um"}),
+        ("600 1.4\n750 1.39\n950 1.38\n", {"unit": "nm"}),
     ],
 )
 def test_a_table_of_a_file_is_kept_inline(tmp_path: Path, text: str, given: Any) -> None:
@@ -95,6 +111,67 @@ def test_a_table_of_a_file_is_kept_inline(tmp_path: Path, text: str, given: Any)
 def test_a_table_of_a_file_may_have_absorption(tmp_path: Path) -> None:
     config = of_file(tmp_path, "wavelength (nm),n,k\n600,1.4,0\n950,1.38,1e-5\n")
     assert config.swept_material.index(2 * pi / 0.95).imag == pytest.approx(1e-5)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "wl,n\n0.6,1.4\n0.95,1.38\nwl,k\n0.6,0\n0.95,1e-5\n",
+        "wl\tn\n0.6\t1.4\n0.95\t1.38\n\nwl\tk\n0.6\t0\n0.95\t1e-5\n",
+        "Wavelength (nm);n;Extinction Coefficient\n600;1,4;0\n950;1,38;1e-5\n",
+        "wavelength (nm) n kappa\n600 1.4 0\n950 1.38 1e-5\n",
+    ],
+)
+def test_a_table_of_a_file_may_have_kappa_in_a_second_block(tmp_path: Path, text: str) -> None:
+    columns = {"wavelength": [0.6, 0.95], "n": [1.4, 1.38], "kappa": [0, 1e-5]}
+    assert of_file(tmp_path, text) == indices({"neuron": {"table": columns}})
+
+
+def test_a_table_far_from_the_band_is_asked_for_its_unit(tmp_path: Path) -> None:
+    config = of_file(tmp_path, "wavelength (um),n\n640,1.4\n920,1.38\n")
+    (said,) = impossible_scene(config)
+    assert said == (
+        f"scene.refractive_index.neuron: {tmp_path / 'neuron.csv'} from 640 um to 920 um given, "
+        "but spectrum.wavelength is from 0.65 um to 0.9 um; are these nm, not um? give a "
+        "dispersion that spans the band, or a narrower band"
+    )
+    (said,) = impossible_scene(of_file(tmp_path, "wl (nm),n\n6000,1.4\n9500,1.38\n"))
+    assert "are these angstrom, not nm?" in said
+
+
+def test_arrays_and_sequences_are_lists() -> None:
+    wavelength = np.array([0.6, 0.75, 0.95])
+    for n in (np.array([1.4, 1.39, 1.38]), (1.4, 1.39, 1.38), pd.Series([1.4, 1.39, 1.38])):
+        table = {"wavelength": wavelength, "n": n}
+        config = load_config({"scene": {"refractive_index": {"neuron": {"table": table}}}})
+        assert config.swept_material == Table((0.6, 0.75, 0.95), (1.4, 1.39, 1.38))
+    assert load_config({"tracing": {"rays": np.int64(7)}}).tracing.rays == 7
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        (
+            "scene: {refractive_index: {neuron: 1,39}}",
+            "scene.refractive_index.neuron: 1,39 given; write it with a point, as 1.39",
+        ),
+        (
+            "scene: {cylinders: [{medium: neuron, diameter: 1,5 um}]}",
+            "scene.cylinders.0.diameter: 1,5 um given; write it with a point, as 1.5 um",
+        ),
+        ("scene: {gap: 1,5 nm}", "scene.gap: 1,5 nm given; write it with a point, as 1.5 nm"),
+        (
+            "scene: {refractive_index: {5: 1.4}}",
+            "scene.refractive_index: 5 given as a key; keys are names",
+        ),
+    ],
+)
+def test_a_decimal_comma_of_yaml_is_named(tmp_path: Path, text: str, line: str) -> None:
+    (tmp_path / "mine.yaml").write_text(text)
+    with pytest.raises(ConfigError) as raised:
+        load_config(tmp_path / "mine.yaml")
+    assert str(raised.value).startswith(line)
+    assert "\n" not in str(raised.value)
 
 
 def test_a_file_is_found_from_the_current_folder(
@@ -110,20 +187,23 @@ BAD: list[tuple[Any, str]] = [
     ("n-bk7", "neuron: 'n-bk7' given; the nearest material that octsim has is N-BK7"),
     ("1.39", "neuron: '1.39' given; it should be a number, written out as digits"),
     (0.9, "neuron: 0.9 given; it should be greater than or equal to 1"),
-    (None, "neuron: None given; it should be a number, {cauchy: [A, B, C]}"),
-    (True, "neuron: True given; it should be a number, {cauchy: [A, B, C]}"),
+    (None, "neuron: null given; it should be a number, {cauchy: [A, B, C]}"),
+    (True, "neuron: true given; it should be a number, {cauchy: [A, B, C]}"),
     ([1.4, 1.5], "neuron: [1.4, 1.5] given; several values of one key stand in the grid"),
     ({}, "neuron: {} given; it should be a number, {cauchy"),
-    ({"couchy": [1.4]}, "neuron: {'couchy': [1.4]} given; it should be a number, {cauchy"),
+    ({"couchy": [1.4]}, "neuron: {couchy: [1.4]} given; it should be a number, {cauchy"),
     ({**CAUCHY, **SELLMEIER}, "it should be one of cauchy and sellmeier; leave the others out"),
     ({"cauchy": 1.4}, "neuron.cauchy: 1.4 given; it should be a list"),
     ({"cauchy": []}, "neuron.cauchy: [] given"),
     ({"cauchy": [1.4, "x"]}, "neuron.cauchy.1: 'x' given; it should be a number"),
     ({**CAUCHY, "units": "um"}, "neuron.units: unknown key; the nearest that a dispersion has is unit"),
     ({"sellmeier": [1, 2]}, "neuron.sellmeier: [1, 2] given; it should be a mapping"),
+    ({"sellmeier": {"b": [0.9], "c": [0.01]}}, "neuron.sellmeier: {b: [0.9], c: [0.01]} given; b, c can't stand here; write B and C, as {B: [...], C: [...]}"),
+    ({"table": {"lambda": [0.6, 0.9], "n": [1.4, 1.4]}}, "lambda can't stand here; its columns are wavelength, n and maybe kappa"),
+    ({"table": "none.csv", "unit": "inhc"}, "neuron.unit: 'inhc' given; inhc is not a unit of length that is known; give one, as nm or um"),
     ({"sellmeier": {"B": [1]}}, "neuron.sellmeier.C: missing"),
-    ({"sellmeier": {"B": [1], "C": [1, 2]}}, "neuron.sellmeier: {'B': [1], 'C': [1, 2]} given; B has 1 numbers and C 2"),
-    ({"table": {"wavelength": ["1 um"], "n": [1.4]}}, "neuron.table.wavelength: ['1 um'] given"),
+    ({"sellmeier": {"B": [1], "C": [1, 2]}}, "neuron.sellmeier: {B: [1], C: [1, 2]} given; B has 1 numbers and C 2"),
+    ({"table": {"wavelength": ["1 um"], "n": [1.4]}}, "neuron.table.wavelength: [1 um] given; it should have 2 or more, not 1"),
     ({"table": {"wavelength": [1, 0.9], "n": [1.4, 1.4]}}, "0.9 um in row 2 is not above 1.0 um in the one before; sort the rows"),
     ({"table": {"wavelength": [1, "1 um"], "n": [1.4, 1.4]}}, "1.0 um in row 2 is not above 1.0 um"),
     ({"table": {"wavelength": ["1", "2 um"], "n": [1.4, 1.4]}}, "neuron.table.wavelength.0: '1' given; a length needs its unit"),
@@ -133,8 +213,8 @@ BAD: list[tuple[Any, str]] = [
     ({"table": {**COLUMNS, "n": [1.4, 1.4]}}, "given; n has 2 numbers and wavelength 3; give each"),
     ({"table": {**COLUMNS, "kappa": [0.1]}}, "given; kappa has 1 numbers and wavelength 3"),
     ({"table": {**COLUMNS, "kappa": [0, -1e-9, 0]}}, "neuron.table.kappa.1: -1e-09 given; it should be greater than or equal to 0"),
-    ({"table": "none.csv"}, "neuron: {'table': 'none.csv'} given; none.csv can't be read (No such file"),
-    ({"table": "none.csv", "unit": "kg"}, "neuron.unit: 'kg' given; 'kg' is not a unit of length"),
+    ({"table": "none.csv"}, "neuron: {table: none.csv} given; none.csv can't be read (No such file"),
+    ({"table": "none.csv", "unit": "kg"}, "neuron.unit: 'kg' given; kg is not a unit of length that is known; give one"),
     ({"table": 5}, "neuron.table: 5 given; it should be a mapping"),
 ]  # fmt: skip
 
@@ -151,11 +231,37 @@ def test_a_bad_index_is_refused_in_one_line(given: Any, line: str) -> None:
 
 FILES: list[tuple[str, dict[str, str], str]] = [
     ("", {}, "holds nothing; write a first row as 'wavelength (nm),n'"),
-    ("wavelength (nm),n\n", {}, "it should have at least 2 items"),
+    ("wavelength (nm),n\n", {}, "it should have 2 or more, not 0"),
     ("wavelength,n\n600,1.4\n950,1.4\n", {}, "does not say the unit of its wavelengths"),
     ("600,1.4\n950,1.4\n", {}, "does not say the unit of its wavelengths; write a first row as"),
     ("600\n950\n", {"unit": "nm"}, "has 1 cells in its first row, and no headings"),
-    ("wavelength (nm),x\n600,1.4\n", {}, "has no column of n by its first row"),
+    (
+        "wavelength (nm),x\n600,1.4\n",
+        {},
+        "has no column of n by its first row, 'wavelength (nm)', 'x'; the headings that are known are wavelength, lambda or wl with its unit, n, n_real or",
+    ),
+    ("freq;n\n600;1,4\n", {}, "has no column of wavelength by its first row, 'freq', 'n'; the"),
+    (
+        "wavelength (nm),n\n600,1,40\n950,1,38\n",
+        {},
+        "row 2: 3 cells, but 2 columns; with decimal commas write semicolons",
+    ),
+    ("wl,n\n600,1.4\n950,1.4\n", {}, "does not say the unit of its wavelengths"),
+    (
+        "wl,n\n.6,1.4\n.9,1.4\nwl,k\n.6,0\n.8,0\n",
+        {},
+        "holds kappa twice, or at other wavelengths than n",
+    ),
+    (
+        "wavelength (um),n\n600,1.4\n1200,1.4\n",
+        {},
+        "row 3: wavelength 1200 um: it should be less than or equal to 1000 um, and the unit is um; are these nm?",
+    ),
+    (
+        "wavelength,n\n600,1.4\n950,1.4\n",
+        {"unit": "inch"},
+        "row 2: wavelength 1.524e+07 um: it should be less than or equal to 1000 um, and the unit is inch; are these nm?",
+    ),
     ("wavelength (nm),n,N\n600,1.4\n", {}, "has two columns of n; leave one of them out"),
     ("wavelength (kg),n\n600,1.4\n", {}, "'kg' is not a unit of length"),
     ("wavelength (nm),n\n600,1.4\n950,1.4\n", {"unit": "um"}, "unit: um is given, but"),
@@ -181,8 +287,8 @@ def test_a_bad_file_is_refused_in_one_line(
 
 
 OF_BAND: list[tuple[Any, str]] = [
-    ({"table": {"wavelength": [0.66, 1], "n": [1.4, 1.4]}}, "a table from 0.66 um to 1.0 um given, which is known from 0.66 um to 1.0 um, but spectrum.wavelength is from 0.65 um to 0.9 um; give"),
-    ({"table": {"wavelength": [0.6, 0.8], "n": [1.4, 1.4]}}, "given, which is known from 0.6 um to 0.8 um, but"),
+    ({"table": {"wavelength": [0.66, 1], "n": [1.4, 1.4]}}, "a table from 0.66 um to 1 um given, but spectrum.wavelength is from 0.65 um to 0.9 um; give"),
+    ({"table": {"wavelength": [0.6, 0.8], "n": [1.4, 1.4]}}, "a table from 0.6 um to 0.8 um given, but"),
     ({"cauchy": [0.9, 0.01]}, "{cauchy: [0.9, 0.01]} given, whose index is 0.912346 at 0.9 um, in the band; it should be from 1 to 10"),
     ({"cauchy": [9.99, 0.01]}, "whose index is 10.0"),
     ({"sellmeier": {"B": [1.0], "C": [0.5625]}}, "whose index is nan at"),

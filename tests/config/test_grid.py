@@ -8,7 +8,7 @@ from gridded import SMALL, gridded
 from octsim.base.errors import ConfigError
 from octsim.config.grid import axes, combinations, remarks, without_grid
 from octsim.config.load import load_config
-from octsim.datasets.axes import axis_name
+from octsim.datasets.axes import axis_coordinates, axis_name
 
 
 def test_a_product_takes_every_value_with_every_other_the_last_key_fastest() -> None:
@@ -68,6 +68,12 @@ def test_a_checked_grid_is_read_back_the_same() -> None:
         ({"detector.core_diametr": ["4 um"]}, "grid.detector.core_diametr: unknown key;"),
         ({"scene": {"gap": ["5 nm"]}}, "don't nest here: write grid: {scene.gap"),
         ({"combine": "zip", "scene.gap": ["1 nm"], "tracing.rays": [1, 2]}, "scene.gap has 1, tr"),
+        ({"scene.attenuation.myelin": ["1 /cm"]}, "no medium is called myelin; give scene"),
+        ({"scene.refractive_index.myelin": [1.4]}, "no medium is called myelin; give scene"),
+        ({"objective.zernike.coma": ["1 nm"]}, "grid.objective.zernike.coma: coma has a direction"),
+        ({"objective.zernike.-11": ["1 nm"]}, "-11 is none of Noll's numbers"),
+        ({"objective.zernike.4": ["1 nm"], "objective.zernike.defocus": ["1 nm"]}, "both set the"),
+        ({"objective.zernike.8": ["1 kg"]}, "grid.objective.zernike.8: '1 kg' given .coma x.;"),
         ({"scene.gap": []}, r"grid.scene.gap: \[\] given; list one value or more"),
         ({"scene.gap": {"start": "1 nm", "stop": "1 nm", "num": 2}}, "or the range is empty"),
         ({"scene.gap": {"start": "1 nm", "stop": "2 nm", "num": 0}}, "grid.scene.gap.num: 0 given"),
@@ -127,3 +133,39 @@ def test_a_target_of_a_single_config_refuses_a_grid() -> None:
 def test_a_key_of_a_target_that_a_run_has_once_is_not_varied() -> None:
     with pytest.raises(ConfigError, match="can't be varied"):
         load_config({"grid": {"calibration.step": ["0.1 nm", "0.2 nm"]}})
+
+
+def test_zernike_terms_and_attenuations_that_no_key_has_yet_are_varied() -> None:
+    grid = {
+        "objective.zernike.spherical": {"start": "-10 nm", "stop": "10 nm", "num": 3},
+        "scene.attenuation.neuron": {"start": "0 /cm", "stop": "100 /cm", "num": 2},
+    }
+    config = gridded(grid)
+    assert list(config.grid.varied) == ["objective.zernike.11", "scene.attenuation.neuron"]
+    found = [at.config for at in combinations(config)]
+    assert [c.objective.zernike.of for c in found[::2]] == [{11: -0.01}, {}, {11: 0.01}]
+    assert [c.scene.attenuation.of["neuron"] for c in found[:2]] == [0.0, 0.01]
+    assert [axis_name(axis) for axis in axes(config)] == ["zernike_11", "attenuation_neuron"]
+    assert load_config(config.to_dict()) == config
+    coordinates = axis_coordinates(axes(config), tuple(combinations(config)))
+    assert {name: one.attrs["units"] for name, one in coordinates.items()} == {
+        "zernike_11": "um", "attenuation_neuron": "1/um",
+    }  # fmt: skip
+    assert coordinates["zernike_11"].values.tolist() == [-0.01, 0.0, 0.01]
+
+
+def test_a_term_of_the_grid_is_laid_over_that_of_the_config() -> None:
+    given = {"objective": {"zernike": {"spherical": "3 nm", "coma x": "2 nm"}}}
+    config = gridded({"objective.zernike.11": ["0 nm", "1 nm"]}, given)
+    found = [at.config.objective.zernike.of for at in combinations(config)]
+    assert found == [{8: 0.002}, {8: 0.002, 11: 0.001}]
+
+
+def test_an_index_of_a_medium_of_ones_own_is_varied() -> None:
+    shell = {"medium": "myelin", "thickness": "9 nm"}
+    scene = {
+        "refractive_index": {"myelin": 1.44},
+        "cylinders": [{"medium": "neuron", "shells": [shell]}],
+    }
+    grid = {"scene.refractive_index.myelin": [1.44, 1.46], "scene.attenuation.myelin": ["1 /cm"]}
+    assert len(list(combinations(gridded(grid, {"scene": scene})))) == 2

@@ -136,7 +136,7 @@ def test_a_length_over_a_length_is_a_unit(name: str, dimension: str, size: str) 
         assert find_unit(other) is None
 
 
-OTHERS = "s ms us µs Hz kHz MHz GHz rad mrad deg kg g K V W J eV N Pa A % 1/um 1/cm um-1"
+OTHERS = "s ms us µs Hz kHz MHz GHz rad mrad deg kg g K V W J eV N Pa A %"
 
 
 @pytest.mark.parametrize("unit", OTHERS.split())
@@ -168,3 +168,14 @@ def test_what_is_no_number_with_a_unit_is_no_length(text: str) -> None:
 def test_an_angstrom_has_two_signs_and_a_name() -> None:
     assert parse_length("+.5e1 \u212b") == parse_length("5. \u00c5") == 5e-4
     assert parse_length("5 ångström") == 5e-4
+
+
+@pytest.mark.parametrize("unit", ["1/um", "/cm", "um-1"])
+def test_an_inverse_length_for_a_length_is_called_what_it_is(unit: str) -> None:
+    with pytest.raises(ValueError, match="is an inverse length; give a length, as 5 nm"):
+        parse_length(f"5 {unit}")
+
+
+def test_a_decimal_comma_is_named() -> None:
+    with pytest.raises(ValueError, match=r"write it with a point, as 1\.4 um"):
+        parse_length("1,4 um")

@@ -12,9 +12,11 @@ import yaml
 from pydantic import BaseModel
 
 from octsim.base.errors import OctsimWarning
+from octsim.config.derive import merge
 from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.config.processing import Processing, options_read
+from octsim.config.unread import unread_scene
 from octsim.datasets.catalog import CATALOG, STAGES
 from octsim.phase.estimators import ESTIMATORS, phases
 
@@ -170,4 +172,14 @@ def test_an_estimator_reads_the_options_that_are_said_to_be_read(
     assert read == options_read(processing)
     assert {*ESTIMATORS, "maximum_likelihood"} == set(
         get_args(Processing.model_fields["estimator"].annotation)
+    )
+
+
+def test_a_gap_without_a_cylinder_is_said_to_be_read_by_nothing() -> None:
+    film = {"medium": "water", "thickness": "swept"}
+    scene = {"layers": ["glass", film, "glass"], "cylinders": [], "gap": "7 nm"}
+    config = Config.model_validate(merge(Config().to_dict(), {"scene": scene}))
+    (said,) = unread_scene(config, {"scene.gap": "7 nm"})
+    assert said == (
+        "scene.gap: 7 nm given, but there is no cylinder, so nothing reads it; leave it out"
     )

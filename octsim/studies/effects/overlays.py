@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from octsim.config.derive import nested
-from octsim.config.dispersion import CauchyIndex, moved
+from octsim.config.dispersion import moved
+from octsim.config.dispersion_forms import CauchyIndex
 from octsim.config.models import Config
 from octsim.config.units import format_length
 from octsim.optics.shipped_materials import SHIPPED

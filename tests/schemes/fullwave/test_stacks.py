@@ -9,9 +9,10 @@ from dense_scenes import Layered, field_by, layer_matrices
 from dense_waves import Beam, Rules
 from numpy.typing import NDArray
 
+from octsim.optics.layered import plates
 from octsim.optics.materials import Constant
 from octsim.optics.pupil import GaussianPupil, UniformPupil
-from octsim.optics.scene import Cylinder, Plane, Region, Scene, plates
+from octsim.optics.scene import Cylinder, Plane, Region, Scene
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane, Layer, cylinder_on_plane
 from octsim.schemes.fullwave.detection import collected
 from octsim.schemes.fullwave.illumination import illumination
