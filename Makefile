@@ -76,7 +76,7 @@ format: .venv/dev
 	$(BIN)/snakefmt Snakefile
 
 docs: results .venv/dev
-	$(BIN)/snakemake stability tradeoff validity diffraction interferometers causes estimators calibration action_potential detector effects design --cores $(CORES)
+	$(BIN)/snakemake stability tradeoff validity diffraction interferometers causes estimators calibration action_potential detector effects scenes responses design --cores $(CORES)
 	$(BIN)/python docs/generate.py
 
 .venv/bin/python:

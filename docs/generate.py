@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from axons_page import axons_page
 from calibration_page import calibration_page
 from design_page import design_page
 from detector_page import detector_page
@@ -418,6 +419,7 @@ if __name__ == "__main__":
         ),
         "detector": lambda: detector_page(xr.load_dataset(RESULTS / "detector.nc")),
         "effects": lambda: effects_page(xr.load_dataset(RESULTS / "effects.nc")),
+        "axons": lambda: axons_page(xr.load_dataset(RESULTS / "scenes.nc")),
         "responses": lambda: responses_page(xr.load_dataset(RESULTS / "responses.nc")),
         "design": lambda: design_page(xr.load_dataset(RESULTS / "design.nc")),
     }
@@ -426,7 +428,7 @@ if __name__ == "__main__":
     drawn = (
         "figure_12", "stability", "tradeoff", "truth", "causes", "spike", "estimators",
         "calibration", "action_potential", "detector", "effects", "design", "validity",
-        "diffraction", "michelson", "plates", "responses",
+        "diffraction", "michelson", "plates", "responses", "scenes", "scene",
     )  # fmt: skip
     for figure in drawn:
         shutil.copy(RESULTS / "figures" / f"{figure}.png", DOCS / "figures" / f"{figure}.png")
