@@ -79,14 +79,15 @@ def _tolerated(found: xr.Dataset) -> list[list[str]]:
 
 TEMPLATE = """# Membranes, myelin, neighbours, a tilt and a cover glass
 
-Written by `make docs` from `results/thesis/scenes.nc`; do not edit. `snakemake scenes` makes it for
-the config's own scene, some minutes on two cores: one thing at a time is put into it, and the phase
-slope is found at {number} diameters from {first} to {last} µm, {band}, by counted rays (`vogel`), light
-paths (`paths`, 1e-4) and Maxwell's equations (`fullwave`, 1e-4). The slope is that of a
-least-squares sinusoid at the depth of each diameter; the foci stay on the configured line, which is
-not fitted anew. A sheath is part of the diameter, which is that of the outermost surface, and keeps
-its thickness as the diameter changes. A neighbour is as thick as the middle of the sweep and stands
-as far beside the thickest neuron of the sweep as its row says, so farther beside a thinner one.
+Written by `make docs` from `results/thesis/scenes.nc`; do not edit. `snakemake scenes` makes it
+for the config's own scene, some minutes on two cores: one thing at a time is put into it, and the
+phase slope is found at {number} diameters from {first} to {last} µm, {band}, by counted rays
+(`vogel`), light paths (`paths`, 1e-4) and Maxwell's equations (`fullwave`, 1e-4). The slope is
+that of a least-squares sinusoid at the depth of each diameter; the foci stay on the configured
+line, which is not fitted anew. A sheath is part of the diameter, which is that of the outermost
+surface, and keeps its thickness as the diameter changes. A neighbour is as thick as the middle of
+the sweep and stands as far beside the thickest neuron of the sweep as its row says, so farther
+beside a thinner one.
 
 As configured the slope at a held focus is {own} (mrad/nm, mean over the diameters).
 
@@ -97,19 +98,20 @@ As configured the slope at a held focus is {own} (mrad/nm, mean over the diamete
 Changes of the slope from the configured scene's by the same scheme, in mrad/nm.
 
 {held}
-*Not by it*: scheme `fullwave` has no elevation. *Too long*: it takes seconds to a minute a point for
-a neighbour or a high cover; `tracing: {{preset: exact}}` does such a scene by itself. A change that is
-below the scatter over the diameters is none that a lab can take off: it is another at each diameter.
+*Not by it*: scheme `fullwave` has no elevation. *Too long*: it takes seconds to a minute a point
+for a neighbour or a high cover; `tracing: {{preset: exact}}` does such a scene by itself. A
+change that is below the scatter over the diameters is none that a lab can take off: it is another
+at each diameter.
 
 ## The focus follows the diameter
 
 {follows}
 ## How well it must be known
 
-By how much more of the quantity the slope at a held focus moves by {percent} % (rms over the diameters),
-from one row of the tables above to the next.
+By how much more of the quantity the slope at a held focus moves by {percent} % (rms over the
+diameters), from one row of the tables above to the next.
 
 {tolerated}
-`calibration.tolerances` takes any of these by its key, as `scene.cylinders.0.shells.0.thickness: 5 nm`,
-and makes it part of the calibration's error ([calibration.md](calibration.md)).
+`calibration.tolerances` takes any of these by its key, as `scene.cylinders.0.shells.0.thickness:
+5 nm`, and makes it part of the calibration's error ([calibration.md](calibration.md)).
 """
