@@ -124,6 +124,11 @@ def _heading(file: str, block: Block, *, later: bool) -> _Heading:
     """Return what a block's heading says; a later block holds κ alone."""
     cells = block.heading
     if cells is None:
+        if all(len(row) > 2 and all(map(str.isdecimal, row[1:])) for _, row in block.rows):
+            raise ValueError(
+                f"{file} has whole numbers alone beside its wavelengths; with decimal commas write "
+                "semicolons between cells, else headings"
+            )
         return _by_order(file, len(block.rows[0][1]))
     columns, unit = dict[str, int](), None
     for place, cell in enumerate(cells):

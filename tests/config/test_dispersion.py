@@ -240,6 +240,11 @@ FILES: list[tuple[str, dict[str, str], str]] = [
         {},
         "has no column of n by its first row, 'wavelength (nm)', 'x'; the headings that are known are wavelength, lambda or wl with its unit, n, n_real or",
     ),
+    (
+        "600, 1,4\n950, 1,3\n",
+        {"unit": "nm"},
+        "has whole numbers alone beside its wavelengths; with decimal commas write semicolons between",
+    ),
     ("freq;n\n600;1,4\n", {}, "has no column of wavelength by its first row, 'freq', 'n'; the"),
     (
         "wavelength (nm),n\n600,1,40\n950,1,38\n",
