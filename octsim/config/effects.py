@@ -66,7 +66,7 @@ def zernike_number(term: object) -> int:
         If there is none, or there are two.
     """
     text = " ".join(str(term).lower().replace("_", " ").replace("-", " ").split())
-    if text in _FAMILIES:
+    if text in _FAMILIES and text not in NAMES:
         both = " or ".join(f"{name} ({number})" for number, name in _FAMILIES[text].items())
         raise ValueError(f"{text} has a direction: write {both}")
     whole = re.fullmatch(r"\s*[-+]?[0-9]+\s*", str(term))

@@ -41,8 +41,6 @@ SCENES: list[tuple[Ability, dict[str, Any], str]] = [
     (Ability.LAYERS, {"layers": ["glass", {"medium": "water", "thickness": "9 um"}, "glass"]}, "scene.layers: [glass, water, glass] given, but {} has two layers"),
     (Ability.UNMIRRORED, {"cylinders": [{**NEURON, "x": "100 nm", "elevation": "2 deg"}]}, "scene.cylinders: [neuron at azimuth 0 deg, elevation 2 deg, x 0.1 um] given, but {} needs a plane"),
     (Ability.LAYERS, {"layers": ["glass", "glass"]}, "scene.layers: [glass, glass] given, but {} has two layers"),
-    (Ability.NO_CYLINDER, {"layers": ["glass", {"medium": "glass", "thickness": "swept"}, "glass"], "cylinders": []}, "scene.cylinders: [] given, but {} needs a cylinder"),
-    (Ability.NO_CYLINDER, {"cylinders": [{"medium": "water"}]}, "scene.cylinders.0.medium: water given, but {} needs a cylinder"),
     (Ability.CYLINDERS, {"cylinders": [NEURON, {**NEURON, "diameter": "1 um", "x": "2 um"}]}, "scene.cylinders: [neuron, neuron] given, but {} has one cylinder"),
     (Ability.ELEVATION, {"cylinders": [{**NEURON, "elevation": "1 deg"}]}, "scene.cylinders.0.elevation: 1 deg given, but {} has the cylinder level"),
     (Ability.SHELLS, {"cylinders": [{**NEURON, "shells": [{"medium": "glass", "thickness": "5 nm"}]}]}, "scene.cylinders.0.shells: [glass] given, but {} has a cylinder without shells"),
@@ -69,6 +67,28 @@ def test_a_scene_is_refused_by_the_schemes_that_lack_it(
     start = line.replace("{} ", f"tracing.scheme: {scheme} ")
     (said,) = (one for one in refused(scheme, {"scene": scene}) if one.startswith(start))
     assert said.endswith(f"; give tracing.scheme: {' or '.join(able)}, or leave it out")
+
+
+@pytest.mark.parametrize(
+    ("scene", "key"),
+    [
+        ({"layers": ["glass", {"medium": "glass", "thickness": "swept"}, "glass"],
+          "cylinders": []}, "scene.layers"),
+        ({"cylinders": [{"medium": "water"}]}, "scene.cylinders.0.medium"),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.filterwarnings("ignore::octsim.base.errors.OctsimWarning")
+def test_a_swept_thing_that_is_no_surface_is_refused_where_nothing_is_left_to_solve(
+    scheme: str, scene: dict[str, Any], key: str
+) -> None:
+    if Ability.NO_CYLINDER in SCHEMES[scheme].honours:
+        config = load_config({"tracing": {"scheme": scheme}}, {"scene": scene})
+        assert Ability.NO_CYLINDER in {one.ability for one in asked_of_scheme(config)}
+        return
+    (said,) = refused(scheme, {"scene": scene})
+    assert said.startswith(f"{key}: ")
+    assert "the same material on both sides is no surface" in said
 
 
 @pytest.mark.parametrize(("scheme", "overlay", "line", "able"), SOME)
