@@ -381,8 +381,9 @@ it, by each scheme; in brackets is what it changes, max |ΔI| / max I, both medi
 diameters. Where the way of light depends on the wavenumber (dispersion, a focal shift) counted
 rays are traced again at so many wavenumbers as their interpolation to 2e-10 needs, and light
 paths at few. A Gaussian falloff has no edge: its patches of the aperture are some 20 times as
-large. A dash is what a scheme does not do, or has by itself. [effects.md](effects.md) has what
-each changes of the phase slope.
+large. The last rows are scenes: a sheath, a second plane, a neuron that is moved or turned. A dash
+is what a scheme does not do, or has by itself. [effects.md](effects.md) and [axons.md](axons.md)
+have what each changes of the phase slope.
 
 {effects}
 
