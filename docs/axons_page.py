@@ -13,6 +13,10 @@ _WORDS = {
     CaseStatus.NOT_BY_THIS_SCHEME: "not by it",
     CaseStatus.TOO_LONG: "too long",
 }
+_BOUND = 0.01
+_KNOWN = """By Maxwell's equations the slope at a held focus moves by more than {percent} % at some
+diameter with: {moving}. By less everywhere with: {still}. Rays alone, which see less of light that is out of
+focus than waves do, put these below {percent} %: {rays}."""
 _HEAD = [
     "scene", "by paths: mean", "scatter", "by Maxwell: mean", "scatter", "worst",
     "phase by Maxwell (rad)",
@@ -35,6 +39,7 @@ def axons_page(found: xr.Dataset) -> str:
             for scheme in found["scheme"].values
         ),
         percent=f"{100 * found.attrs['tolerance']:g}",
+        known=_known(sinusoid.sel(focus_mode="held")),
         held=table(_HEAD, _changes(sinusoid.sel(focus_mode="held"))),
         follows=table(_HEAD, _changes(sinusoid.sel(focus_mode="follows"))),
         tolerated=table(["scene", "by paths", "by Maxwell", "unit"], _tolerated(found)),
@@ -55,6 +60,23 @@ def _changes(found: xr.Dataset) -> list[list[str]]:
         phase = np.abs(waves["scene_phase_change"])
         rows.append([*row, _plain(waves["scene_worst_change"]), _plain(phase.mean())])
     return rows
+
+
+def _known(found: xr.Dataset) -> str:
+    """Say what moves the held slope by more than a percent somewhere, and what never does."""
+    bound = _BOUND * float(found["scene_phase_slope"].isel(case=0).sel(scheme="fullwave").mean())
+    moving, still, rays = [], [], []
+    for name in found["case"].values[1:]:
+        one = found["scene_worst_change"].sel(case=name)
+        waves, paths = float(one.sel(scheme="fullwave")), float(one.sel(scheme="paths"))
+        if np.isfinite(waves):
+            (moving if waves > bound else still).append(str(name))
+        elif paths <= bound:
+            rays.append(str(name))
+    return _KNOWN.format(
+        percent=f"{100 * _BOUND:g}", moving="; ".join(moving) or "nothing",
+        still="; ".join(still) or "nothing", rays="; ".join(rays) or "nothing",
+    )  # fmt: skip
 
 
 def _signed(value: xr.DataArray, otherwise: str) -> str:
@@ -88,6 +110,8 @@ line, which is not fitted anew. A sheath is part of the diameter, which is that 
 surface, and keeps its thickness as the diameter changes. A neighbour is as thick as the middle of
 the sweep and stands as far beside the thickest neuron of the sweep as its row says, so farther
 beside a thinner one.
+
+{known}
 
 As configured the slope at a held focus is {own} (mrad/nm, mean over the diameters).
 
