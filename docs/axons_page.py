@@ -15,8 +15,8 @@ _WORDS = {
 }
 _BOUND = 0.01
 _KNOWN = """By Maxwell's equations the slope at a held focus moves by more than {percent} % at some
-diameter with: {moving}. By less everywhere with: {still}. Rays alone, which see less of light that is out of
-focus than waves do, put these below {percent} %: {rays}."""
+diameter with: {moving}. By less everywhere with: {still}. Rays alone, which see less of light that
+is out of focus than waves do, put these below {percent} %: {rays}."""
 _HEAD = [
     "scene", "by paths: mean", "scatter", "by Maxwell: mean", "scatter", "worst",
     "phase by Maxwell (rad)",

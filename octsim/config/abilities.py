@@ -54,6 +54,9 @@ def asked_of_scheme(config: Config) -> Iterator[Asked]:
         yield Asked(Ability.PLATES, "scene.cylinders", as_text(media))
     elif not media:
         yield Asked(Ability.NO_CYLINDER, "scene.layers", as_text(layers))
+    azimuths = [cylinder.azimuth for cylinder in scene.cylinders]
+    if any(math.remainder(one - azimuths[0], math.pi) for one in azimuths[1:]):
+        yield Asked(Ability.CROSSED, "scene.cylinders", directions(scene))
     if mirrored_at(scene) is None:
         yield Asked(Ability.UNMIRRORED, "scene.cylinders", directions(scene))
     for place, cylinder in enumerate(scene.cylinders):
@@ -210,7 +213,7 @@ def _indices_for(asked: set[Ability], config: Config) -> RefractiveIndex:
 
 
 def _without(asked: set[Ability], cylinder: CylinderConfig) -> CylinderConfig:
-    if Ability.UNMIRRORED in asked:
+    if {Ability.UNMIRRORED, Ability.CROSSED} & asked:
         asked = asked | {Ability.AZIMUTH, Ability.ELEVATION}
     fields = {one: name for one, name in _OF_CYLINDERS.items() if one in asked}
     plain = CylinderConfig(medium=cylinder.medium)

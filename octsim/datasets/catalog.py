@@ -201,6 +201,7 @@ _BESIDE = (
                    "phase slope at a fixed focus, and what makes its error"),
         ),
     ),
+    *OF_NEURONS,
     Stage(
         "expansion", "octsim.studies.calibration.expansion:expansion_of_series",
         "Turn a measured series of phases into nanometres",
@@ -249,7 +250,6 @@ _BESIDE = (
                    "what each effect changes of the phase slope and the spectrum, and its cost"),
         ),
     ),
-    *OF_NEURONS,
     Stage(
         "design", "octsim.studies.design.study:design",
         "Search fill, focus, aperture and band for the least error of an expansion",

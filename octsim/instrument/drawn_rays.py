@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.config.abilities import as_far_as
+from octsim.config.effects import ZernikeConfig
 from octsim.config.models import Config
 from octsim.instrument.build import optics_of, scene_of
 from octsim.optics.beam import Beam, vogel_beam
@@ -36,7 +37,8 @@ def drawn_rays(
 ) -> list[DrawnPath]:
     """Return the strongest light paths of a point, with rays spread over where they are launched.
 
-    Rays are those of the thesis, whatever the run's scheme is.
+    Rays are those of the thesis, whatever the run's scheme is, and meet in the focus: without
+    aberrations and rulings, which would move them by less than a picture shows.
 
     Parameters
     ----------
@@ -49,7 +51,7 @@ def drawn_rays(
     paths, rays : int
         How many, at most, and of each.
     """
-    counted = as_far_as(COUNTED_RAYS, config)
+    counted = _plain(as_far_as(COUNTED_RAYS, config))
     optics, scene = optics_of(counted), scene_of(counted, diameter)
     k = config.spectrum.middle
     options = {"rays": _RAYS, "min_amplitude": _DROPPED}
@@ -70,6 +72,12 @@ def drawn_rays(
         way = trails(faces, int(codes[number]), few, at, height)
         drawn.append(DrawnPath(name, float(size[number]), way))
     return drawn
+
+
+def _plain(config: Config) -> Config:
+    """Return a config, not checked, whose rays meet in the focus."""
+    objective = config.objective.model_copy(update={"zernike": ZernikeConfig()})
+    return config.model_copy(update={"objective": objective, "beam": type(config.beam)()})
 
 
 def _fields(found: Returned, weight: NDArray[np.float64], k: float) -> NDArray[np.complex128]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from itertools import pairwise
 from math import inf, isfinite, nan, pi, sqrt
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
@@ -168,22 +167,6 @@ def rows_within(material: Material, low: float, high: float) -> int:
     if not isinstance(material, Table):
         return 0
     return sum(low < 2 * pi / one < high for one in material.wavelength)
-
-
-def intervals_within(material: Material, low: float, high: float) -> float:
-    """Return how often the least distance of a table's rows is in a band; 0 of a formula.
-
-    Parameters
-    ----------
-    material : Material
-    low, high : float
-        Ends of the band, 1/µm.
-    """
-    if not isinstance(material, Table):
-        return 0.0
-    rows = sorted(2 * pi / one for one in material.wavelength)
-    apart = [b - a for a, b in pairwise(rows) if a < high and low < b]
-    return (high - low) / min(apart, default=inf)
 
 
 def group_index(material: Material, wavenumber: float) -> float:

@@ -7,6 +7,8 @@ from octsim.optics.scene import Cylinder, Scene
 
 _PLACES = 181
 """Of a closed line."""
+_ALONG = 1e-3
+"""Sine of the angle to the plane below which a cylinder is taken to be along it."""
 
 
 def outlines(scene: Scene, left: float, right: float) -> list[tuple[str, NDArray[np.float64]]]:
@@ -41,7 +43,8 @@ def _cut(cylinder: Cylinder, heights: list[float]) -> NDArray[np.float64]:
     long = towards / level if level > 0 else np.array([1.0, 0.0])
     short = np.array([-long[1], long[0]])
     turn = np.linspace(0, 2 * np.pi, _PLACES)
-    far = cylinder.radius / np.sqrt(1 - level**2)
+    # along the plane, or nearly, both of its sides are lines
+    far = cylinder.radius / np.sqrt(max(1 - level**2, _ALONG**2))
     line = np.outer(long, far * np.cos(turn)) + np.outer(short, cylinder.radius * np.sin(turn))
     line += np.array([[cylinder.x], [cylinder.z]])
     below = max((h for h in heights if h <= cylinder.z), default=-np.inf)

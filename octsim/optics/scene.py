@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.optics.materials import Material, intervals_within, rows_within
+from octsim.optics.materials import Material, rows_within
 
 
 class Symmetry(NamedTuple):
@@ -178,10 +178,6 @@ class Scene:
     def rows_within(self, low: float, high: float) -> int:
         """Return how many rows a table of any region has between two wavenumbers, 1/µm."""
         return max(rows_within(region.material, low, high) for region in self.regions)
-
-    def intervals_within(self, low: float, high: float) -> float:
-        """Return how often the least distance of a table's rows is in a band, 1/µm."""
-        return max(intervals_within(region.material, low, high) for region in self.regions)
 
     @property
     def absorbs(self) -> bool:

@@ -42,6 +42,7 @@ class Ability(Enum):
     CYLINDERS = "has one cylinder"
     OFF_AXIS = "has the cylinder on the optical axis"
     AZIMUTH = "has the cylinder along y"
+    CROSSED = "has parallel cylinders"
     ELEVATION = "has the cylinder level"
     SHELLS = "has a cylinder without shells"
     DISPERSION = "has constant indices"
@@ -141,6 +142,7 @@ _OF_BOTH = frozenset(
 _OF_RAYS = _OF_BOTH | {
     Ability.ATTENUATION_AROUND, Ability.FALLOFF, Ability.LAYERS, Ability.CYLINDERS,
     Ability.OFF_AXIS, Ability.AZIMUTH, Ability.ELEVATION, Ability.SHELLS, Ability.NO_CYLINDER,
+    Ability.CROSSED,
 }  # fmt: skip
 
 COUNTED_RAYS = Scheme(

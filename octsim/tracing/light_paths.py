@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 from octsim.optics.scene import Scene
 from octsim.tracing.faces import AnyFaces, Faces, faces_at
 from octsim.tracing.path_codes import steps_of_code
+from octsim.tracing.path_counts import MOST_MEETINGS
 
-LONGEST = 31
-"""Most meetings that a code has room for."""
+LONGEST = MOST_MEETINGS
+"""Most meetings of a path that has a code."""
 
 
 def path_name(code: int, surfaces: Sequence[str]) -> str:

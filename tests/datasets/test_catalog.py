@@ -14,7 +14,10 @@ ROOMS = sorted(file.parent for file in (ROOT / "octsim").glob("*/__init__.py"))
 STUDIES = sorted(file.parent for file in (ROOT / "octsim" / "studies").glob("*/__init__.py"))
 OF_THE_CALIBRATION = {"expansion", "action_potential"}
 # of no dataset, and of a dataset over a grid
-FIGURES_OF_THEIR_OWN = {"figure_1": "octsim.figures.beam", "grid": "octsim.figures.grid"}
+FIGURES_OF_THEIR_OWN = {
+    "figure_1": "octsim.figures.beam", "grid": "octsim.figures.grid",
+    "scene": "octsim.figures.scene",
+}  # fmt: skip
 
 
 def module_of(function: str) -> str:

@@ -10,11 +10,11 @@ from octsim.phase.hiding_error import hiding_error
 from octsim.schemes.light import AccuracyStatus
 
 
-def test_an_error_of_counted_rays_hides_a_fringe_only_above_all_of_the_light() -> None:
-    error = np.array([0.02, 0.02, 3.0, np.nan])
+def test_an_error_of_counted_rays_hides_a_fringe_only_far_above_all_of_the_light() -> None:
+    error = np.array([0.02, 3.0, 30.0, np.nan])
     status = np.array([0, 3, 3, 3])
     status[1:] = AccuracyStatus.NOT_CONTROLLED
-    assert hiding_error(error, status).tolist() == [0.02, 0.0, 3.0, 0.0]
+    assert hiding_error(error, status).tolist() == [0.02, 0.0, 30.0, 0.0]
 
 
 def test_counted_rays_behind_crossed_polarisers_along_the_neuron_have_no_fringe() -> None:

@@ -128,7 +128,7 @@ def test_what_a_scheme_does_not_honour_has_a_status_and_the_scheme_that_does() -
     assert of_paths[rulings].status == EffectStatus.NOT_BY_THIS_SCHEME
     assert of_paths[rulings].able == ("vogel",)
     assert by_name(run("vogel"))[rulings].status == EffectStatus.MEASURED
-    assert of_paths[moved].able == ("fullwave",)
+    assert of_paths[moved].able == ("vogel", "paths", "fullwave")
     assert of_waves[moved].status == EffectStatus.MEASURED
     # a key that a scheme does not read is none that it honours
     for name in ("R_det +10 %", "falloff cosine", "Zernike defocus (4) 10 nm rms, phase only"):

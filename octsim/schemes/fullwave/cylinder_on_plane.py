@@ -130,7 +130,7 @@ def cylinders_of(scene: Scene, wavenumber: float = 1.0) -> tuple[CylinderOnPlane
                 f"{key}.elevation: given, but scheme fullwave has cylinders level; "
                 "give tracing.scheme: paths"
             )
-        if cylinder.azimuth != every[0][0].azimuth:
+        if math.remainder(cylinder.azimuth - every[0][0].azimuth, math.pi):
             raise OctsimError(
                 f"{key}.azimuth: not that of the first one, but scheme fullwave has parallel "
                 "cylinders; give tracing.scheme: paths"
@@ -168,7 +168,7 @@ def _among_planes(
     return CylinderOnPlane(
         glass, water, neuron, cylinder.z - cylinder.radius - floor, 2 * cylinder.radius,
         # an axis turned about the vertical one through (x, 0) is closer
-        cylinder.x * math.cos(cylinder.azimuth),
+        cylinder.x * math.cos(azimuth_of(scene)),
         core.attenuation_at(wavenumber) / (2 * wavenumber),
         tuple(
             _layer(one.outside, thickness, wavenumber)

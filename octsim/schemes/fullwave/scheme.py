@@ -15,6 +15,7 @@ from octsim.schemes.fullwave.series import over_band
 from octsim.schemes.fullwave.solve import Place, Point, solve
 from octsim.schemes.light import Field, LightAt, Optics, Options, Waves
 from octsim.schemes.reference_arm import with_reference
+from octsim.schemes.tables_of_indices import phase_left_out
 
 _PUPIL = np.linspace(-0.7, 0.7, 15)
 
@@ -68,7 +69,8 @@ def sharing(optics: Optics, options: Options, operators: Operators) -> LightAt:
         point = Point(
             numbers, optics.pupil, optics.numerical_aperture, height,
             place_at if optics.scene_varies or absorbs else None,
-            wavefront_by(optics.effects.aberration, azimuth), scene.intervals_within(*optics.band),
+            wavefront_by(optics.effects.aberration, azimuth),
+            lambda number: phase_left_out(scene, optics.detector, height, *optics.band, number),
             others,
         )  # fmt: skip
         found = solve(point, optics.band, options["accuracy"], operators)

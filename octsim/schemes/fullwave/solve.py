@@ -35,9 +35,11 @@ _LAST, _BEFORE = slice(-3, None), slice(-6, -3)
 """Chebyshev coefficients that tell of those left out."""
 
 _ROUNDING = 2e-14
-_NODES_EACH = 3
-"""Wavenumbers for the least distance of a table's rows, so that what turns there is seen."""
 """Error over the field's size below which more orders bring nothing."""
+_OF_TABLES = 0.2
+"""Phase that tables may leave out, over the accuracy."""
+_MORE_NODES = 1.5
+"""Factor on the wavenumbers where a table of indices is no polynomial through them."""
 
 
 class Place(NamedTuple):
@@ -63,8 +65,8 @@ class Point(NamedTuple):
     """Returns scene and focus at a wavenumber, 1/µm, where they depend on it."""
     wavefront: Wavefront | None = None
     """Aberration of the pupil, in the frame of the cylinder."""
-    intervals: float = 0.0
-    """How often the least distance of a table's rows is in the band: an index may turn at each."""
+    left_out: Callable[[int], float] = lambda _: 0.0
+    """Returns how far phases are off by tables of indices, for a number of wavenumbers."""
     neighbours: tuple[CylinderOnPlane, ...] = ()
     """Other cylinders, among the same planes, at the middle of the band."""
 
@@ -177,9 +179,12 @@ def solve(point: Point, band: tuple[float, float], accuracy: float, operators: O
         orders = orders.with_those(first_orders(neighbour, aperture, focus, band[1], accuracy))
     number = first_nodes(scene, aperture, focus, band, accuracy)
     most = most_nodes(scene, band, accuracy)
-    if point.intervals:
+    if point.left_out(number) > 0:
+        # a table turns at its rows, maybe between wavenumbers that are too far apart to see it;
         # beyond the most, nothing is solved, and the status says so
-        most, number = MOST_WAVENUMBERS, max(number, math.ceil(_NODES_EACH * point.intervals))
+        most = MOST_WAVENUMBERS
+        while number <= most and point.left_out(number) > _OF_TABLES * accuracy:
+            number = math.ceil(_MORE_NODES * number)
     removed = removed_path(scene, focus)
     best, checked, by_orders, spent, next_one = None, None, np.inf, 0.0, 0.0
     while orders.within_budget and number <= most and spent + next_one <= MOST_MULTIPLICATIONS:
@@ -192,8 +197,8 @@ def solve(point: Point, band: tuple[float, float], accuracy: float, operators: O
             checked = orders
         slow = np.exp(-1j * k * removed)
         by_nodes, fall = left_out(np.abs(coefficients(found.values * slow)))
-        error = by_orders + by_nodes
         largest = float(np.sqrt((np.abs(found.values) ** 2).mean(axis=0).max()))
+        error = by_orders + by_nodes + point.left_out(number) * largest
         reached = relative_error(largest, error) <= accuracy
         status = AccuracyStatus.REACHED if reached else AccuracyStatus.BUDGET_SPENT
         best = Waves(

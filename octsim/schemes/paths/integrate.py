@@ -237,6 +237,7 @@ def integrate_nodes(
         As `octsim.tracing.tree.check_reach` does, or if something lacks that symmetry.
     """
     check_reach(scene, detector, focus, max_intersections)
+    max_intersections += scene.unseen_meetings
     symmetric, mirrored = scene.symmetry.x and even.x, scene.symmetry.y and even.y
     if not mirrored:
         raise ValueError("the scene is not symmetric in y, which scheme paths takes for granted")
@@ -257,13 +258,15 @@ def integrate_nodes(
         faces, point, survey_orders, orders, max_intersections, accuracy, one_path * accuracy,
         faint, least, budget, room_for_point(), room_for_nodes(placed),
     )  # fmt: skip
-    if sees_edges(scene):
+    if status == AccuracyStatus.REACHED and sees_edges(scene):
         # all of what is found in this way counts as error
-        found = unseen(faces, point, np.unique(rays[0]), max_intersections, accuracy)
+        found, more = unseen(faces, point, np.unique(rays[0]), max_intersections, accuracy, least)
+        segments += more
         rest = (*found[:2], np.zeros(found.path.size), *found[2:])
         rays = tuple(map(np.concatenate, zip(rays, rest[: len(rays)], strict=True)))
         largest = float(np.abs(found.amplitude).sum())
-        if status == AccuracyStatus.REACHED and 2 * largest > accuracy * size:
+        # besides the integrals' own, which may be the margin
+        if 2 * largest > (1 / _MARGIN - 1) * accuracy * size:
             status = AccuracyStatus.NOT_REACHED.value
     path, amplitude, rough_amplitude, optical_path_length, *launched = rays
     light = Light(

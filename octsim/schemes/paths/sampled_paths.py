@@ -21,8 +21,8 @@ from octsim.schemes.band_nodes import nodes_within, to_coefficients
 from octsim.schemes.field_sum import relative_error
 from octsim.schemes.light import AccuracyStatus, Light, Optics, Sampled, attenuated
 from octsim.schemes.paths.path_sum import field_of_paths
-from octsim.schemes.paths.tables_of_indices import phase_left_out
 from octsim.schemes.paths.weighed import Followed, Weighed, are_weighed, followed, weighed
+from octsim.schemes.tables_of_indices import phase_left_out
 
 _FASTEST, _SLOWEST = 0.003, 0.97  # fall of coefficients, from two to the next two
 _FEWEST = 5  # nodes of a part of the band

@@ -54,32 +54,35 @@ def recall(survey: Survey, number: int, point: Point, space: Workspace) -> None:
 
 
 @register_jitable
-def by_path(codes: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return an order in which the rays of a path stand together, and where each path begins.
-
-    Those of one block of rays do already.
-    """
-    order, firsts = np.empty(codes.size, np.int64), np.empty(codes.size + 1, np.int64)
-    done = np.zeros(codes.size, np.bool_)
-    count, paths = 0, 0
-    for begin in range(codes.size):
-        if done[begin]:
-            continue
-        firsts[paths], paths = count, paths + 1
-        for i in range(begin, codes.size):
-            if codes[i] == codes[begin]:
-                order[count], done[i], count = i, True, count + 1
-    firsts[paths] = count
-    return order, firsts[: paths + 1]
-
-
-@register_jitable
 def in_order(values: NDArray[Any], order: NDArray[np.int64]) -> NDArray[Any]:
     """Return some values in an order; to index by it takes numba longer to compile."""
     chosen = np.empty(order.size, values.dtype)
     for i in range(order.size):
         chosen[i] = values[order[i]]
     return chosen
+
+
+@register_jitable
+def by_path(codes: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return an order in which the rays of a path stand together, and where each path begins.
+
+    Paths stand in the order in which the first ray of each does.
+    """
+    together = np.argsort(codes, kind="mergesort")  # which is stable
+    begins = np.empty(codes.size + 1, np.int64)
+    paths = 0
+    for i in range(codes.size):
+        if i == 0 or codes[together[i]] != codes[together[i - 1]]:
+            begins[paths], paths = i, paths + 1
+    begins[paths] = codes.size
+    order, firsts = np.empty(codes.size, np.int64), np.empty(paths + 1, np.int64)
+    count = 0
+    for place, p in enumerate(np.argsort(in_order(together, begins[:paths]))):
+        firsts[place] = count
+        for i in range(begins[p], begins[p + 1]):
+            order[count], count = together[i], count + 1
+    firsts[paths] = count
+    return order, firsts
 
 
 @register_jitable

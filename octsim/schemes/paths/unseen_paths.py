@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from octsim.optics.beam import vogel_beam
 from octsim.optics.detector import Acceptance, rim_margin
-from octsim.optics.turned_rays import path_by_lens, through_lens, turned
+from octsim.optics.turned_rays import Turning, path_by_lens, through_lens, turned
 from octsim.schemes.paths.check_rays import weight_of
 from octsim.schemes.paths.workspace import Point
 from octsim.tracing.faces import AnyFaces, Faces
@@ -20,7 +20,6 @@ from octsim.tracing.kernel import FIRST_CARRIED, trace_amplitudes
 SCOUTS = 16_000
 """Rays of the spiral."""
 _FAINT = 0.1  # of the accuracy: amplitude from which they are followed
-_WITHIN = 2.0  # radii of the detector: an aberration moves rays by less than the rest
 
 
 class Unseen(NamedTuple):
@@ -43,7 +42,8 @@ def unseen(
     known: NDArray[np.int64],
     max_intersections: int,
     accuracy: float,
-) -> Unseen:
+    least: float,
+) -> tuple[Unseen, int]:
     """Return the detected rays of a spiral whose light paths are not known.
 
     Parameters
@@ -57,13 +57,22 @@ def unseen(
         Surfaces that one ray may meet.
     accuracy : float
         That is asked for.
+    least : float
+        Amplitude from which rays are followed at all.
+
+    Returns
+    -------
+    Unseen
+    int
+        Segments traced.
     """
     detector = point.detector
     beam = vogel_beam(SCOUTS, detector.objective_radius, detector.focus_distance)
-    (ray, path), numbers, _, _ = trace_amplitudes(
-        faces, through_lens(beam, point.lens), detector,
-        Acceptance(np.inf, _WITHIN * detector.radius), point.focus, max_intersections,
-        _FAINT * accuracy,
+    # an aberration turns rays by more than the detector's radius
+    within = np.inf if isinstance(point.lens, Turning) else detector.radius
+    (ray, path), numbers, segments, _ = trace_amplitudes(
+        faces, through_lens(beam, point.lens), detector, Acceptance(np.inf, within), point.focus,
+        max_intersections, max(_FAINT * accuracy, least),
     )  # fmt: skip
     new = np.flatnonzero(~np.isin(path, known))
     new = new[np.argsort(path[new], kind="stable")]
@@ -79,7 +88,7 @@ def unseen(
         more[place] = path_by_lens(point.lens, detector, x, y, vx, vy, x * x + y * y)
     carried, launched = numbers[FIRST_CARRIED, new], ray[new]
     there = weight > 0
-    return Unseen(
+    found_rays = Unseen(
         *(
             one[there]
             for one in (
@@ -88,3 +97,4 @@ def unseen(
             )
         )
     )  # fmt: skip
+    return found_rays, int(segments)

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from octsim.config.derive import nested
+from octsim.config.derive import merge, nested
 from octsim.config.models import Config
 from octsim.studies.effects.overlays import Overlay, of_cylinder
 
@@ -22,8 +22,10 @@ def is_on(config: Config, kind: str) -> bool:
         "apodisation": objective.apodisation is not None,
         "falloff": config.detector.falloff != "parabolic",
         "rulings": config.beam.waist is not None,
-        "scene": swept is not None
-        and bool(swept.x or swept.azimuth or swept.elevation or swept.shells),
+        "scene": len(scene.layers) > 2
+        or (
+            swept is not None and bool(swept.x or swept.azimuth or swept.elevation or swept.shells)
+        ),
     }
     return on.get(kind, False)
 
@@ -45,6 +47,9 @@ def without(config: Config, kind: str) -> Overlay:
         "apodisation": nested("objective.apodisation", None),
         "falloff": nested("detector.falloff", "parabolic"),
         "rulings": nested("beam.waist", None),
-        "scene": of_cylinder(x="0 um", azimuth="0 deg", elevation="0 deg", shells=[])(config) or {},
+        "scene": merge(
+            nested("scene.layers", [scene.objective_medium, scene.host_medium]),
+            of_cylinder(x="0 um", azimuth="0 deg", elevation="0 deg", shells=[])(config) or {},
+        ),
     }
     return off[kind]

@@ -9,6 +9,7 @@ from octsim.config.abilities import asked_of_scheme
 from octsim.config.checks import impossible
 from octsim.config.derive import merge, overlap, validated
 from octsim.config.models import Config
+from octsim.config.scene import RefractiveIndex
 from octsim.config.scheme import scheme_of
 from octsim.schemes.table import SCHEMES, Ability, Scheme
 from octsim.studies.effects.kinds import EFFECTS, Effect
@@ -117,11 +118,21 @@ def _switched_off(config: Config) -> Iterator[Variant]:
         if not is_on(config, kind):
             continue
         off = _possible(merge(config.to_dict(), without(config, kind)))
-        if off is None or any(impossible(off)):
+        if off is None or any(impossible(off := _without_unused(off))):
             continue
         effect = Effect(f"{kind}{CONFIGURED}", kind, "the config's own, against none", lambda _: {})
         own = (scheme_of(config).name,)
         yield Variant(effect, EffectStatus.MEASURED, config, off, own)
+
+
+def _without_unused(config: Config) -> Config:
+    """Return a config, not checked as a whole, without media that nothing is of any more."""
+    used = {*RefractiveIndex.model_fields, *config.scene.media.values()}
+    data = config.to_dict()
+    for section in ("refractive_index", "attenuation"):
+        of = data["scene"][section]
+        data["scene"][section] = {name: value for name, value in of.items() if name in used}
+    return validated(data)
 
 
 def _possible(data: dict[str, Any]) -> Config | None:

@@ -1,5 +1,6 @@
 """The scenes that are compared: the configured one, and one thing in it varied at a time."""
 
+import math
 from collections.abc import Iterator, Mapping
 from enum import IntEnum
 from typing import Any, NamedTuple
@@ -8,7 +9,7 @@ from octsim.base.errors import ConfigError
 from octsim.config.checks import impossible
 from octsim.config.derive import by_light_paths, by_waves, counting_rays, merge, validated
 from octsim.config.models import Config
-from octsim.config.units import format_length
+from octsim.config.units import format_angle, format_length
 from octsim.studies.effects.overlays import Overlay, of_cylinder, shell
 
 AS_CONFIGURED = "as configured"
@@ -144,10 +145,11 @@ def _neighbour(config: Config, beside: float) -> Overlay:
     # both stand on one plane: centres at half their diameters
     apart = (thick + sweep.stop) / 2 + beside
     lifted = (sweep.stop - thick) / 2
-    x = own.x + (apart**2 - lifted**2) ** 0.5
+    # both axes are parallel; x is where they cross the plane y = 0
+    x = own.x + (apart**2 - lifted**2) ** 0.5 / math.cos(own.azimuth)
     other = {
         "medium": own.medium, "diameter": format_length(thick), "x": format_length(x),
-        "gap": format_length(scene.gap_of(own)),
+        "gap": format_length(scene.gap_of(own)), "azimuth": format_angle(own.azimuth),
     }  # fmt: skip
     return {"scene": {"cylinders": [*config.to_dict()["scene"]["cylinders"], other]}}
 
