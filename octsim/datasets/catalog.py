@@ -89,6 +89,8 @@ _RUN = (
         figures=(
             Figure("figure_8", "octsim.figures.spectra:figure_8",
                    "a spectrum on its way to its Fourier transform"),
+            Figure("scene", "octsim.figures.scene:scene_figure",
+                   "the scene to scale, with rays of its strongest light paths"),
         ),
     ),
     Stage(
@@ -98,8 +100,6 @@ _RUN = (
         figures=(
             Figure("paths", "octsim.figures.paths:figure_paths",
                    "what each light path has in the spectra"),
-            Figure("scene", "octsim.figures.scene:scene_figure",
-                   "the scene to scale, with rays of its strongest light paths"),
         ),
     ),
     Stage(

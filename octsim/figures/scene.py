@@ -23,10 +23,10 @@ _LEAST = 0.4
 """The least of that, µm."""
 
 
-def scene_figure(paths: xr.Dataset) -> Figure:
+def scene_figure(spectra: xr.Dataset) -> Figure:
     """Draw the middle diameter of a sweep, cut by the plane y = 0, and rays on its light paths."""
-    config = validated(json.loads(paths.attrs["config"]))
-    one = paths.isel(diameter=paths.sizes["diameter"] // 2)
+    config = validated(json.loads(spectra.attrs["config"]))
+    one = spectra.isel(diameter=spectra.sizes["diameter"] // 2)
     diameter, focus = float(one["diameter"]), float(one["focus"])
     scene = scene_of(config, diameter)
     left, right, bottom, top = _window(scene, focus)
@@ -49,7 +49,7 @@ def scene_figure(paths: xr.Dataset) -> Figure:
     axes.set_xlabel("x (µm)")
     axes.set_ylabel("height (µm)")
     axes.grid(visible=False)
-    axes.set_title(title(paths, f"The scene at d = {diameter:.4g} µm, focus (+) {focus:.4g} µm"))
+    axes.set_title(title(spectra, f"The scene at d = {diameter:.4g} µm, focus (+) {focus:.4g} µm"))
     handles, names = axes.get_legend_handles_labels()
     figure.legend(
         handles[::-1], names[::-1], loc="outside lower center", fontsize=7,
