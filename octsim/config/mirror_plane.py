@@ -3,15 +3,17 @@
 import math
 
 from octsim.config.scene import CylinderConfig, SceneConfig
-from octsim.optics.materials import Constant
-from octsim.optics.mirror_plane import mirror_azimuth
-from octsim.optics.scene import Cylinder, Region, Scene
-
-_HOST = Region("host", Constant(1.0))
 
 
 def mirrored_at(scene: SceneConfig) -> float | None:
     """Return the angle of `octsim.optics.mirror_plane.mirror_azimuth` for a scene, rad."""
+    if not any(one.azimuth or one.elevation for one in scene.cylinders):
+        return 0.0  # at once, as numpy is not imported to read a config
+    from octsim.optics.materials import Constant
+    from octsim.optics.mirror_plane import mirror_azimuth
+    from octsim.optics.scene import Cylinder, Region, Scene
+
+    host = Region("host", Constant(1.0))
     kinds = list(dict.fromkeys((one.medium, one.shells) for one in scene.cylinders))
 
     def body(one: CylinderConfig) -> Cylinder:
@@ -19,9 +21,9 @@ def mirrored_at(scene: SceneConfig) -> float | None:
         kind = Region("", Constant(1.0), float(kinds.index((one.medium, one.shells))))
         radius = (one.diameter or 0.0) / 2
         height = scene.gap_of(one) + radius
-        return Cylinder("", one.x, height, radius, kind, _HOST, one.azimuth, one.elevation)
+        return Cylinder("", one.x, height, radius, kind, host, one.azimuth, one.elevation)
 
-    return mirror_azimuth(Scene(_HOST, tuple(map(body, scene.cylinders))))
+    return mirror_azimuth(Scene(host, tuple(map(body, scene.cylinders))))
 
 
 def directions(scene: SceneConfig) -> str:

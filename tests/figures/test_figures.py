@@ -121,6 +121,7 @@ LABELS = {
     "figure_10": {"Diameter of the cylinder (µm)", "Magnitude (sum over the samples)"},
     "figure_11": {"Diameter of the cylinder (µm)", "Phase, unwrapped (rad)"},
     "figure_12": {"Diameter of the cylinder (µm)", "Phase slope (mrad/nm)"},
+    "scene": {"x (µm)", "height (µm)"},
     "paths": {
         "Diameter of the cylinder (µm)",
         "Field amplitude",

@@ -240,6 +240,7 @@ def test_rays_of_one_light_path_are_those_of_the_tree() -> None:
     trace_path, faces = make_path_tracer(AMPLITUDE), faces_at(scene, 8.0)
     for code in np.unique(found.path).tolist():
         rays = found.path == code
-        numbers = trace_path(faces, code, beam, detector, FOCUS)[:, found.ray[rays]]
+        every = np.full(beam.vx.size, code)
+        numbers = trace_path(faces, every, beam, detector, FOCUS)[:, found.ray[rays]]
         assert (numbers[LENGTH] == found.optical_path_length[rays]).all()
         assert (numbers[FIRST_CARRIED] == found.carried[0, rays]).all()

@@ -21,10 +21,10 @@ def test_it_is_the_focus_sweep_of_light_paths_to_the_bit() -> None:
         assert np.array_equal(by_rays[name], own[name])
 
 
-def test_it_leaves_out_what_light_paths_cannot_do() -> None:
+def test_it_is_of_the_scene_that_waves_are_in() -> None:
     beyond = {"scene": {"cylinders": [{"medium": "neuron", "x": "50 nm", "azimuth": "5 deg"}]}}
     by_rays = octsim.ray_focus_sweep(octsim.load_config(WAVES, beyond))
-    own = octsim.focus_sweep(octsim.load_config(PATHS))
+    own = octsim.focus_sweep(octsim.load_config(PATHS, beyond))
     assert np.array_equal(by_rays["intensity"], own["intensity"])
 
 

@@ -258,7 +258,7 @@ def integrate_nodes(
         faces, point, survey_orders, orders, max_intersections, accuracy, one_path * accuracy,
         faint, least, budget, room_for_point(), room_for_nodes(placed),
     )  # fmt: skip
-    if status == AccuracyStatus.REACHED and sees_edges(scene):
+    if sees_edges(scene):
         # all of what is found in this way counts as error
         found, more = unseen(faces, point, np.unique(rays[0]), max_intersections, accuracy, least)
         segments += more
@@ -266,7 +266,8 @@ def integrate_nodes(
         rays = tuple(map(np.concatenate, zip(rays, rest[: len(rays)], strict=True)))
         largest = float(np.abs(found.amplitude).sum())
         # besides the integrals' own, which may be the margin
-        if 2 * largest > (1 / _MARGIN - 1) * accuracy * size:
+        allowed = (1 / _MARGIN - 1) * accuracy * size
+        if status == AccuracyStatus.REACHED and 2 * largest > allowed:
             status = AccuracyStatus.NOT_REACHED.value
     path, amplitude, rough_amplitude, optical_path_length, *launched = rays
     light = Light(

@@ -156,7 +156,7 @@ def test_responses_that_are_too_alike_are_named_with_their_remedy() -> None:
         ({"fit": ["diameter", "gap"], "bands": BANDS[:1]},
          "expansion.fit: 2 quantities given, but phases in 1 bands can't tell them apart; give 2"),
         ({"fit": ["diameter", "gap"]}, "expansion.fit: 2 quantities given, but phases in 0 bands"),
-        ({"fit": ["gap"]}, "expansion.fit: ['gap'] given; it should have diameter"),
+        ({"fit": ["gap"]}, "expansion.fit: [gap] given; it should have diameter"),
         ({"fit": ["diameter", "gapp"]}, "expansion.fit.1: 'gapp' given; it should be diameter,"),
         ({"fit": ["diameter", "thickness"], "bands": BANDS},
          "expansion.fit: thickness given, but the neuron has 0 shells"),

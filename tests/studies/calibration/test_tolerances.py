@@ -47,7 +47,7 @@ def test_parameters_move_alone_and_only_where_they_can(overlay: dict[str, Any]) 
     seen = parameters_of(config)
     by_rays = config.tracing.scheme == "paths"
     assert set(PARAMETERS) - set(seen) == (
-        {"fill", "polarisation", "offset"} if by_rays else {"detector_radius"}
+        {"fill", "polarisation"} if by_rays else {"detector_radius"}
     )
     for name in seen:
         for by in nodes_of(config, name).offset.tolist():
