@@ -38,7 +38,7 @@ def drawn_rays(
     """Return the strongest light paths of a point, with rays spread over where they are launched.
 
     Rays are those of the thesis, whatever the run's scheme is, and meet in the focus: without
-    aberrations and rulings, which would move them by less than a picture shows.
+    aberrations and rulings, as those that are drawn are followed from there.
 
     Parameters
     ----------

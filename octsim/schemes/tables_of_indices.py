@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from octsim.optics.detector import Detector
 from octsim.optics.materials import Material, Table
-from octsim.optics.scene import Cylinder, Scene
+from octsim.optics.scene import Cylinder, Scene, Surface
 from octsim.schemes.band_nodes import nodes_within, to_coefficients
 
 _BETWEEN = 4
@@ -49,11 +49,11 @@ def phase_left_out(
     return phase
 
 
-def _height(surface: object) -> float:
+def _height(surface: Surface) -> float:
     """Return the height of a surface's highest point, µm."""
     if isinstance(surface, Cylinder):
         return surface.z + surface.radius
-    return float(getattr(surface, "height", 0.0))
+    return surface.height
 
 
 @cache

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from octsim.optics.detector import RIM
 from octsim.schemes.band_nodes import nodes_within, to_coefficients
 from octsim.schemes.returned_rays import FIRST_FIELD, LENGTH, RIM_SQUARED, Spiral, X, Y, weights
+from octsim.tracing.light_paths import first_rays
 
 _AT_ONCE = 2_000_000  # numbers
 _NEAR_AN_EDGE = 0.5  # of how much a distance varies from node to node, within which it may be met
@@ -54,7 +55,7 @@ def summed(spiral: Spiral, tracks: Tracks, k: Floats) -> Fields:
     """Return the fields of tracks over a band at wavenumbers that span it evenly, (K,)."""
     tracks = tracks.some(np.argsort(tracks.path, kind="stable"))
     half = (k[-1] - k[0]) / 2
-    begin = np.flatnonzero(np.diff(tracks.path, prepend=-1))
+    begin = first_rays(tracks.path)
     lengths = tracks.coefficients[LENGTH]
     turn = np.abs(lengths - _of_each(lengths, begin)).sum(axis=0).max(initial=0.0) * k[-1]
     # of e^(ix) over −turn … turn, as Bessel functions fall
@@ -102,7 +103,7 @@ def _by_nodes(spiral: Spiral, tracks: Tracks, k: Floats, number: int) -> Fields:
     """Return the fields of rays that are smooth over a band, from those at a number of nodes."""
     if not tracks.ray.size:
         return _at_each(spiral, tracks, k)
-    begin = np.flatnonzero(np.diff(tracks.path, prepend=-1))
+    begin = first_rays(tracks.path)
     place, to = chebyshev.chebpts1(number), np.linspace(-1, 1, k.size)
     at = nodes_within(k[0], k[-1], number)
     counts = np.diff(begin, append=tracks.ray.size)

@@ -21,6 +21,11 @@ LONGEST = MOST_MEETINGS
 """Most meetings of a path that has a code."""
 
 
+def first_rays(path: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the first ray of each light path, (P,), of rays with codes (N,), sorted by them."""
+    return np.flatnonzero(np.diff(path, prepend=-1))
+
+
 def path_name(code: int, surfaces: Sequence[str]) -> str:
     """Return the name of a light path: its surfaces in order, R reflected or T transmitted at each.
 

@@ -89,7 +89,7 @@ def _meet_turned(
     faces: AnyFaces, choice: int, block: Block, n: int, distance: Lanes, cos_i: Lanes
 ) -> None:
     how, shape = faces.meeting[choice], faces.shape[faces.next_face[choice]]
-    axis, radius = Axis(shape[0], shape[1], shape[3], shape[4], shape[5]), shape[2]
+    axis, radius = _any_axis(faces, faces.next_face[choice]), shape[2]
     if how == Meeting.ENTER_TURNED:
         for i in range(n):
             distance[i], cos_i[i] = enter_turned(
@@ -192,24 +192,19 @@ def _level_normal(axis: LevelAxis, curvature: float, at: Vector) -> Vector:
     return cylinder_normal(axis.x, axis.z, curvature, at)
 
 
-@register_jitable(forceinline=True)
-def _any_normal(axis: Axis, curvature: float, at: Vector) -> Vector:
-    return turned_normal(axis, curvature, at)
-
-
 def normal_from(axis: LevelAxis | Axis, curvature: float, at: Vector) -> Vector:
     """Return the normal of a cylinder at a point on it, of a length of nearly 1.
 
     `curvature` is 1 / radius on the outside, −1 / radius on the inside, 1/µm.
     """
     if isinstance(axis, Axis):
-        return _any_normal(axis, curvature, at)
+        return turned_normal(axis, curvature, at)
     return _level_normal(axis, curvature, at)
 
 
 @overload(normal_from, strict=False, jit_options={"forceinline": True})
 def _compile_normal(axis: Any, curvature: Any, at: Any) -> Callable[..., Vector]:  # noqa: ARG001
-    return _any_normal if axis.instance_class is Axis else _level_normal
+    return turned_normal if axis.instance_class is Axis else _level_normal
 
 
 @register_jitable(forceinline=True)

@@ -18,7 +18,7 @@ from octsim.tracing.faces import Faces
 from octsim.tracing.follow import FollowRoom, follow_room, walk
 from octsim.tracing.kernel import AT_VX, AT_VY, AT_X, AT_Y, FIRST_CARRIED, LENGTH
 from octsim.tracing.lanes import CARRIED, LANES, PATH, RAY, Block, direction, position
-from octsim.tracing.light_paths import LONGEST, steps_of
+from octsim.tracing.light_paths import LONGEST, first_rays, steps_of
 
 Integers = NDArray[np.int64]
 PathTracer = Callable[[Faces, Integers, AnyBeam, Detector, float], NDArray[np.float64]]
@@ -72,7 +72,7 @@ def make_path_tracer(carry: Carry) -> PathTracer:
     def numbers_of(
         faces: Faces, path: Integers, beam: AnyBeam, detector: Detector, focus: float
     ) -> NDArray[np.float64]:
-        begin = np.append(np.flatnonzero(np.diff(path, prepend=-1)), path.size)
+        begin = np.append(first_rays(path), path.size)
         found: NDArray[np.float64] = trace_paths(
             faces, path[begin[:-1]], begin, beam, detector, focus, room(space)
         )

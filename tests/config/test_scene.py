@@ -286,4 +286,7 @@ def test_bodies_may_touch_whatever_the_rounding_of_their_lengths(diameter: float
     x = 2 * math.sqrt(1.2 * diameter / 2)
     beside = {"medium": "neuron", "diameter": f"{diameter!r} um", "x": f"{x!r} um"}
     between = ["glass", {"medium": "water", "thickness": "2.405 um"}, "glass"]
-    load_config({"scene": {"cylinders": [{"medium": "neuron"}, beside], "layers": between}})
+    config = load_config(
+        {"scene": {"cylinders": [{"medium": "neuron"}, beside], "layers": between}}
+    )
+    assert [one.x for one in config.scene.cylinders] == [0.0, x]

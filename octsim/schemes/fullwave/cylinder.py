@@ -14,6 +14,7 @@ from octsim.schemes.fullwave.orders import waves_along
 from octsim.schemes.fullwave.two_by_two import matrix, solved, times
 
 Array = NDArray[Any]
+UNIT = np.eye(2).reshape(2, 2, 1, 1, 1)
 
 
 class Scattering(NamedTuple):
@@ -26,6 +27,17 @@ class Scattering(NamedTuple):
     forwards."""
     far_side: Array
     """Its Debye term p = 2: in, reflected once inside, and out."""
+
+
+class Interface(NamedTuple):
+    """What a surface does to waves that go out (H⁽¹⁾) and in (H⁽²⁾), relative to their values."""
+
+    from_outside: Array
+    """What it reflects."""
+    from_inside: Array
+    into: Array
+    """What it transmits."""
+    out: Array
 
 
 class Side(NamedTuple):
@@ -66,7 +78,8 @@ def scattering(
     # those beyond scatter nothing but rounding, by which the coupling, which grows with the order,
     # would be overwhelmed
     kept = np.arange(waves + 1) <= waves_along(scene, along, k, waves)[..., np.newaxis]
-    debye = _debye(outside, inside, in_water, within)
+    surface = interface(outside, inside, in_water, within)
+    debye = debye_terms(surface, in_water, within)
     return Scattering(*(one * kept for one in (whole, *debye)))
 
 
@@ -108,20 +121,28 @@ def admittance(one: Cylindrical, side: Side) -> Array:
     return matrix(side.skew, turn, -(side.n**2) * turn, side.skew)
 
 
-def _debye(outside: Side, inside: Side, in_water: Kinds, within: Kinds) -> tuple[Array, Array]:
-    """Return the terms p = 0, with diffraction, and p = 2.
-
-    With what goes out (H⁽¹⁾) and in (H⁽²⁾) on both sides of the surface: reflection
-    from outside and from inside, and transmission, which is one more.
-    (Hovenac & Lock, JOSA A 9, 781 (1992); Lock, JOSA A 14, 640 (1997).)
-    """
-    out_2, in_2 = (admittance(one, outside) for one in in_water[1:])
+def interface(outside: Side, inside: Side, around: Kinds, within: Kinds) -> Interface:
+    """Return what a surface does to waves on both sides of it; transmission is one more."""
+    out_2, in_2 = (admittance(one, outside) for one in around[1:])
     out_3, in_3 = (admittance(one, inside) for one in within[1:])
     from_outside = solved(in_3 - out_2, in_2 - in_3)
     from_inside = solved(out_2 - in_3, out_3 - out_2)
-    one = np.eye(2).reshape(2, 2, 1, 1, 1)
-    into, out = one + from_outside, one + from_inside
-    turn_2, turn_3 = (one.outgoing.value / one.incoming.value for one in (in_water, within))
-    near = (from_outside / turn_2 - one) / 2
-    far = times(out, times(from_inside, into)) * (turn_3**2 / turn_2 / 2)
-    return near, far
+    return Interface(from_outside, from_inside, UNIT + from_outside, UNIT + from_inside)
+
+
+def debye_terms(surface: Interface, around: Kinds, within: Kinds) -> tuple[Array, Array]:
+    """Return the terms p = 0, with diffraction, and p = 2, of what surrounds a core.
+
+    (Hovenac & Lock, JOSA A 9, 781 (1992); Lock, JOSA A 14, 640 (1997).)
+
+    Parameters
+    ----------
+    surface : Interface
+        Of one surface, or of several taken for one.
+    around, within : Kinds
+        Functions around the outermost one and in the core.
+    """
+    turn_2, turn_3 = (one.outgoing.value / one.incoming.value for one in (around, within))
+    near = (surface.from_outside / turn_2 - UNIT) / 2
+    inside = times(surface.from_inside, surface.into)
+    return near, times(surface.out, inside) * (turn_3**2 / turn_2 / 2)

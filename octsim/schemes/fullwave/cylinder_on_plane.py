@@ -125,7 +125,7 @@ def cylinders_of(scene: Scene, wavenumber: float = 1.0) -> tuple[CylinderOnPlane
     every = _cylinders(scene)
     for place, (cylinder, _) in enumerate(every):
         key = f"scene.cylinders.{place}"
-        if getattr(cylinder, "elevation", 0.0):
+        if cylinder.elevation:
             raise OctsimError(
                 f"{key}.elevation: given, but scheme fullwave has cylinders level; "
                 "give tracing.scheme: paths"

@@ -1,9 +1,6 @@
-r"""Plates without a cylinder: a stack of planes reflects each plane wave of the pupil by itself.
+"""Plates without a cylinder: a stack of planes reflects each plane wave of the pupil by itself.
 
-.. math:: r \to \frac{r_{j,j+1} + r\, e^{2 i k_z d}}{1 + r_{j,j+1}\, r\, e^{2 i k_z d}}
-
-from the highest plane down (Airy's sum of all reflections to and fro, Born & Wolf, ch. 1.6), for
-light polarised s and p. What returns is integrated over the pupil, as a plane's own light is.
+What returns is integrated over the pupil, as a plane's own light is.
 """
 
 from collections.abc import Callable
@@ -20,9 +17,10 @@ from octsim.schemes.field_sum import relative_error
 from octsim.schemes.fullwave.detection import pupil_nodes, returned_by
 from octsim.schemes.fullwave.illumination import Wavefront
 from octsim.schemes.fullwave.orders import radial_nodes
-from octsim.schemes.fullwave.plane import fresnel, normal
+from octsim.schemes.fullwave.plane import normal
 from octsim.schemes.fullwave.series import coefficients, nodes
 from octsim.schemes.fullwave.solve import left_out
+from octsim.schemes.fullwave.stacks import through
 from octsim.schemes.light import TERMS, AccuracyStatus, Waves
 
 Array = NDArray[Any]
@@ -79,22 +77,8 @@ def reflection_of(
     wavenumber : float
         1/µm.
     """
-    along = [normal(index, sine) for index in stack.indices]
-    steps = [
-        fresnel(*sides, *media)
-        for sides, media in zip(pairwise(along), pairwise(stack.indices), strict=True)
-    ]
-    whole = steps[-1]
-    for step, inside, thickness in zip(
-        steps[-2::-1], along[-2:0:-1], reversed(stack.thickness), strict=True
-    ):
-        turned = np.exp(2j * wavenumber * thickness * inside)
-        r_s, r_p = (
-            (one + beyond * turned) / (1 + one * beyond * turned)
-            for one, beyond in zip(step, whole, strict=True)
-        )
-        whole = r_s, r_p
-    return *whole, along[0]
+    found = through(stack.indices, stack.thickness, sine**2, np.array(wavenumber))
+    return *found.reflected, normal(stack.indices[0], sine)
 
 
 def solve_plates(

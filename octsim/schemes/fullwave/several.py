@@ -45,8 +45,8 @@ class Lights(NamedTuple):
     wavefront: Wavefront | None
 
 
-class Several(NamedTuple):
-    """What is collected of cylinders, not over the norm yet."""
+class Collected(NamedTuple):
+    """What the detector collects of cylinders, not over the norm yet."""
 
     terms: Array
     """Of all of it, of the near sides, and of the far sides, (3, 2, K)."""
@@ -60,7 +60,7 @@ def several(
     k: NDArray[np.float64],
     orders: Orders,
     tolerance: float,
-) -> Several:
+) -> Collected:
     """Return what the detector collects of cylinders that scatter to each other.
 
     Parameters
@@ -113,7 +113,7 @@ def several(
                     collected[term, polarisation, number] += (
                         (found * turn).sum(-1) * measure
                     ).sum()
-    return Several(collected, taken)
+    return Collected(collected, taken)
 
 
 def _waves_of_each(cylinders: tuple[CylinderOnPlane, ...], waves: int) -> list[int]:

@@ -21,7 +21,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.schemes.fullwave.bessel import Cylindrical, Kinds, kinds
-from octsim.schemes.fullwave.cylinder import Scattering, Side, admittance, scattering, side_of
+from octsim.schemes.fullwave.cylinder import (
+    UNIT,
+    Interface,
+    Scattering,
+    Side,
+    debye_terms,
+    interface,
+    scattering,
+    side_of,
+)
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 from octsim.schemes.fullwave.orders import waves_along
 from octsim.schemes.fullwave.two_by_two import matrix, solved, times
@@ -201,34 +210,21 @@ def _debye(surfaces: list[_Surface]) -> tuple[Array, Array]:
     """Return the terms p = 0, with diffraction, and p = 2, all shells taken for one surface.
 
     What it reflects and lets through, from outside and from inside, is found from the innermost
-    surface on, with all that goes to and fro in the shells. See
-    `octsim.schemes.fullwave.cylinder.scattering` for one surface.
+    surface on, with all that goes to and fro in the shells.
     """
-    one = np.eye(2).reshape(2, 2, 1, 1, 1)
-    outside, inside, into, out = _interface(surfaces[-1])
+    outside, inside, into, out = interface(*surfaces[-1])
     for number in range(len(surfaces) - 2, -1, -1):
         near, beyond = surfaces[number], surfaces[number + 1]
         # waves that go in, and out, from one surface to the other
         inwards = beyond.around.incoming.value / near.within.incoming.value
         outwards = near.within.outgoing.value / beyond.around.outgoing.value
-        r_outside, r_inside, t_into, t_out = _interface(near)
+        r_outside, r_inside, t_into, t_out = interface(*near)
         back = outside * (inwards * outwards)
-        fro = solved(one - times(r_inside, back), t_into)
-        to = times(t_out, solved(one - times(back, r_inside), out * outwards))
-        passed = times(into, solved(one - times(r_inside, back), times(r_inside, out)))
+        fro = solved(UNIT - times(r_inside, back), t_into)
+        to = times(t_out, solved(UNIT - times(back, r_inside), out * outwards))
+        passed = times(into, solved(UNIT - times(r_inside, back), times(r_inside, out)))
         outside = r_outside + times(times(t_out, back), fro)
         inside = inside + passed * (inwards * outwards)
         into, out = times(into, fro) * inwards, to
-    x_2, x_3 = surfaces[0].around, surfaces[-1].within
-    turn_2, turn_3 = (x.outgoing.value / x.incoming.value for x in (x_2, x_3))
-    far = times(out, times(inside, into)) * (turn_3**2 / turn_2 / 2)
-    return (outside / turn_2 - one) / 2, far
-
-
-def _interface(at: _Surface) -> tuple[Array, Array, Array, Array]:
-    """Return what one surface reflects from outside and inside, and lets in and out."""
-    out_2, in_2 = (admittance(one, at.outside) for one in at.around[1:])
-    out_3, in_3 = (admittance(one, at.inside) for one in at.within[1:])
-    outside, inside = solved(in_3 - out_2, in_2 - in_3), solved(out_2 - in_3, out_3 - out_2)
-    one = np.eye(2).reshape(2, 2, 1, 1, 1)
-    return outside, inside, one + outside, one + inside
+    whole = Interface(outside, inside, into, out)
+    return debye_terms(whole, surfaces[0].around, surfaces[-1].within)

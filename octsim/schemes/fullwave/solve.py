@@ -25,7 +25,7 @@ from octsim.schemes.fullwave.orders import (
 )
 from octsim.schemes.fullwave.scatter import incoming, scattered
 from octsim.schemes.fullwave.series import coefficients, nodes
-from octsim.schemes.fullwave.several import Lights, several
+from octsim.schemes.fullwave.several import Collected, Lights, several
 from octsim.schemes.light import TERMS, AccuracyStatus, Waves
 
 Array = NDArray[Any]
@@ -117,14 +117,28 @@ def _field_in_place(
     """Return the field of a scene and a focus that are the same at all of some wavenumbers."""
     scene, pupil, aperture, focus = point[:4]
     if point.neighbours:
-        return _field_of_several(point, k, orders, tolerance)
+        lights = Lights(pupil, aperture, focus, point.wavefront)
+        found = several((scene, *point.neighbours), lights, k, orders, tolerance)
+    else:
+        found = _of_one(point, k, orders, tolerance, operators)
+    radial = radial_nodes(aperture, scene.n_glass, abs(focus) + scene.depth, float(k.max()))
+    cylinders = found.terms / (norm(pupil, aperture, k, radial) * 4 * np.pi * scene.n_glass)
+    plane = plane_return(scene, pupil, aperture, focus, k, radial, point.wavefront)
+    both = np.broadcast_to(plane, (2, k.size))
+    terms = np.stack((both, cylinders[1], cylinders[2]))
+    return Solved(plane + cylinders[0], terms, found.multiplications)
+
+
+def _of_one(
+    point: Point, k: NDArray[np.float64], orders: Orders, tolerance: float, operators: Operators
+) -> Collected:
+    """Return what the detector collects of a cylinder by itself."""
+    scene, pupil, aperture, focus = point[:4]
     operator = operators.of(scene, aperture, k, orders)
     lights = illumination(
         scene, pupil, aperture, focus, operator.along, k, orders.waves, orders.across,
         point.wavefront,
     )  # fmt: skip
-    radial = radial_nodes(aperture, scene.n_glass, abs(focus) + scene.depth, float(k.max()))
-    whole = norm(pupil, aperture, k, radial) * 4 * np.pi * scene.n_glass
     cylinder = np.zeros((len(operator.cylinder), 2, k.size), np.complex128)
     multiplications = 0.0
     for lit in lights:
@@ -133,27 +147,7 @@ def _field_in_place(
         for term, matrix in enumerate(operator.cylinder):
             density = collected(lit, *scattered(matrix, e, h), scene.n_water, operator.along)
             cylinder[term, lit.polarisation] += (density * operator.along_weight).sum(axis=1)
-    cylinder /= whole
-    plane = plane_return(scene, pupil, aperture, focus, k, radial, point.wavefront)
-    both = np.broadcast_to(plane, (2, k.size))
-    terms = np.stack((both, cylinder[1], cylinder[2]))
-    return Solved(plane + cylinder[0], terms, multiplications)
-
-
-def _field_of_several(
-    point: Point, k: NDArray[np.float64], orders: Orders, tolerance: float
-) -> Solved:
-    """Return the field of several cylinders; the first one's planes are all others'."""
-    scene, pupil, aperture, focus = point[:4]
-    radial = radial_nodes(aperture, scene.n_glass, abs(focus) + scene.depth, float(k.max()))
-    whole = norm(pupil, aperture, k, radial) * 4 * np.pi * scene.n_glass
-    lights = Lights(pupil, aperture, focus, point.wavefront)
-    found = several((scene, *point.neighbours), lights, k, orders, tolerance)
-    cylinders = found.terms / whole
-    plane = plane_return(scene, pupil, aperture, focus, k, radial, point.wavefront)
-    both = np.broadcast_to(plane, (2, k.size))
-    terms = np.stack((both, cylinders[1], cylinders[2]))
-    return Solved(plane + cylinders[0], terms, found.multiplications)
+    return Collected(cylinder, multiplications)
 
 
 def solve(point: Point, band: tuple[float, float], accuracy: float, operators: Operators) -> Waves:

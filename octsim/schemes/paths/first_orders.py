@@ -62,13 +62,13 @@ def orders_of(
     return survey, (min(max(4, round(digits + 1)), 10), min(max(3, round(0.5 * digits + 1)), 8))
 
 
-def are_many(faces: Faces | AnyFaces) -> bool:
+def are_many(faces: Faces) -> bool:
     """Return whether a scene has many more light paths than the thesis's, or plates."""
     return isinstance(faces, AnyFaces)
 
 
 def faintest(
-    faces: Faces | AnyFaces, point: Point, rays: int, max_intersections: int, least: float,
+    faces: Faces, point: Point, rays: int, max_intersections: int, least: float,
     budget: int,
 ) -> float:  # fmt: skip
     """Return the least amplitude to which the rays of a survey can be followed within a budget.
@@ -78,7 +78,7 @@ def faintest(
 
     Parameters
     ----------
-    faces : Faces or AnyFaces
+    faces : Faces
         Of the scene.
     point : Point
     rays : int

@@ -10,11 +10,11 @@ from octsim.optics.beam import Beam, aim
 from octsim.schemes.paths.workspace import Point
 from octsim.tracing.blocks import NOWHERE, advance_chosen, choose, keep, launch, meet_nearest, split
 from octsim.tracing.carry import AMPLITUDE
-from octsim.tracing.faces import AnyFaces, Faces, is_flat
+from octsim.tracing.faces import Faces, is_flat
 from octsim.tracing.follow import FOLLOW_ROOM, FollowRoom
+from octsim.tracing.light_paths import LONGEST
 
 _CARRIED, _launch, _move, _split, _ = AMPLITUDE
-_LONGEST = 100  # surfaces that light goes through without a reflection
 _ALONG_X, _ALONG_Y = 21, 10
 
 
@@ -40,7 +40,7 @@ def _meets_an_edge(faces: Faces, beam: Beam, focus: float, space: FollowRoom) ->
     cos_t, face, chosen = space.cos_t[:], space.face[:], space.chosen[:]
     count, departure = beam.vx.size, 0
     launch(beam, 0, count, focus, now, _launch)
-    for _ in range(_LONGEST):
+    for _ in range(LONGEST):
         meet_nearest(faces, departure, now, count, face, distance, cos_i, cos_met, cos_t)
         parts, edge = _parts(faces, face, count)
         if parts or face[0] == NOWHERE:
@@ -63,7 +63,7 @@ def _meets_an_edge(faces: Faces, beam: Beam, focus: float, space: FollowRoom) ->
     return False
 
 
-def light_misses(faces: Faces | AnyFaces, point: Point) -> bool:
+def light_misses(faces: Faces, point: Point) -> bool:
     """Return whether light of the planes x = 0 and y = 0 goes different ways through the scene."""
     radius = point.detector.objective_radius
     x = np.concatenate((np.linspace(-radius, radius, _ALONG_X), np.zeros(_ALONG_Y)))

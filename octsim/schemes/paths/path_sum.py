@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from octsim.base.compiled import compiled
 from octsim.schemes.light import Field
+from octsim.tracing.light_paths import first_rays
 
 _STRETCH = 128  # wavenumbers in a row, between phases set anew
 _MOST_NODES = 64  # along k, of one light path
@@ -196,7 +197,7 @@ def field_of_paths(
     accuracy : float
         Of which the interpolation may use a hundredth.
     """
-    first_ray = np.append(np.flatnonzero(np.diff(path, prepend=-1)), path.size)
+    first_ray = np.append(first_rays(path), path.size)
     num = wavenumber.size
     step = (wavenumber[-1] - wavenumber[0]) / max(num - 1, 1)
     tolerance = 0.01 * accuracy * _scale(first_ray, amplitude) / max(first_ray.size - 1, 1)

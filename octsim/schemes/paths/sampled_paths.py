@@ -23,6 +23,7 @@ from octsim.schemes.light import AccuracyStatus, Light, Optics, Sampled, attenua
 from octsim.schemes.paths.path_sum import field_of_paths
 from octsim.schemes.paths.weighed import Followed, Weighed, are_weighed, followed, weighed
 from octsim.schemes.tables_of_indices import phase_left_out
+from octsim.tracing.light_paths import first_rays
 
 _FASTEST, _SLOWEST = 0.003, 0.97  # fall of coefficients, from two to the next two
 _FEWEST = 5  # nodes of a part of the band
@@ -240,7 +241,7 @@ def _node(point: _Point, k: float, accuracy: float) -> _Node:
     found = weighed(optics, scene, point.followed_at(k, accuracy), k)
     light = attenuated(found.light, scene, k)
     # the rays of a path stand together
-    begin = np.flatnonzero(np.diff(light.path, prepend=-1))
+    begin = first_rays(light.path)
     turned = np.exp(1j * k * light.optical_path_length) * _rows(optics, found)
 
     def of_paths(values: NDArray[Any]) -> NDArray[Any]:

@@ -9,12 +9,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.base.records import room
 from octsim.optics.beam import vogel_beam
-from octsim.optics.detector import Acceptance, rim_margin
-from octsim.optics.turned_rays import Turning, path_by_lens, through_lens, turned
+from octsim.optics.detector import Acceptance
+from octsim.optics.turned_rays import Turning, path_by_lens, through_lens
 from octsim.schemes.paths.check_rays import weight_of
 from octsim.schemes.paths.workspace import Point
-from octsim.tracing.faces import AnyFaces, Faces
+from octsim.tracing.faces import Faces
+from octsim.tracing.follow import bundle_of, note_return
 from octsim.tracing.kernel import FIRST_CARRIED, trace_amplitudes
 
 SCOUTS = 16_000
@@ -37,7 +39,7 @@ class Unseen(NamedTuple):
 
 
 def unseen(
-    faces: Faces | AnyFaces,
+    faces: Faces,
     point: Point,
     known: NDArray[np.int64],
     max_intersections: int,
@@ -48,7 +50,7 @@ def unseen(
 
     Parameters
     ----------
-    faces : Faces or AnyFaces
+    faces : Faces
         Of the scene.
     point : Point
     known : ndarray
@@ -77,24 +79,18 @@ def unseen(
     new = np.flatnonzero(~np.isin(path, known))
     new = new[np.argsort(path[new], kind="stable")]
     weight, more = np.zeros(new.size), np.zeros(new.size)
+    returned = room(bundle_of(new.size))
     for place, arrival in enumerate(new.tolist()):
         x, y, vx, vy = numbers[1:FIRST_CARRIED, arrival].tolist()
-        across, along, _ = turned(point.lens, vx, vy, 1.0)
-        cos = float(np.sqrt(1 - vx * vx - vy * vy))
-        place_x, place_y = (x - across) * cos, (y - along) * cos
-        inside = rim_margin(detector, place_x, place_y, vx, vy, cos)
-        found = weight_of(place_x, place_y, cos, inside, detector.radius, point.falloff)
-        weight[place] = max(found, 0.0)
+        note_return(returned, place, detector, point.lens, x, y, vx, vy)
+        weight[place] = weight_of(
+            returned.x[place], returned.y[place], returned.cos[place], returned.inside[place],
+            detector.radius, point.falloff,
+        )  # fmt: skip
         more[place] = path_by_lens(point.lens, detector, x, y, vx, vy, x * x + y * y)
     carried, launched = numbers[FIRST_CARRIED, new], ray[new]
-    there = weight > 0
-    found_rays = Unseen(
-        *(
-            one[there]
-            for one in (
-                path[new], carried * weight / SCOUTS, numbers[0, new] + more, beam.vx[launched],
-                beam.vy[launched], carried,
-            )
-        )
+    arrays = (
+        path[new], carried * weight / SCOUTS, numbers[0, new] + more, beam.vx[launched],
+        beam.vy[launched], carried,
     )  # fmt: skip
-    return found_rays, int(segments)
+    return Unseen(*(one[weight > 0] for one in arrays)), int(segments)

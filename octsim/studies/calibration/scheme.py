@@ -3,11 +3,15 @@
 from collections.abc import Mapping
 from enum import IntEnum
 
+import numpy as np
+from numpy.typing import NDArray
+
 from octsim.base.errors import ConfigError
 from octsim.config.abilities import asked_of_scheme
 from octsim.config.derive import by_accuracy
 from octsim.config.maxwell import beyond_maxwell, by_maxwell
 from octsim.config.models import Config
+from octsim.config.scheme import options_of, scheme_of
 from octsim.schemes.light import AccuracyStatus
 from octsim.schemes.table import FULL_WAVE, LIGHT_PATHS
 
@@ -61,6 +65,38 @@ def converged(config: Config) -> Config:
                     f"and {asked.key}: {asked.given} is given; leave one of the two out"
                 )
     return paths_of(config)
+
+
+def require_budget(
+    config: Config, section: str, what: str, spectra: int, diameters: NDArray[np.float64]
+) -> None:
+    """Refuse what takes longer than is confirmed.
+
+    Parameters
+    ----------
+    config : Config
+    section : str
+        Whose diameters they are.
+    what : str
+        Takes that long, with a place for the scheme's name.
+    spectra : int
+        At each diameter.
+    diameters : ndarray, shape (D,)
+        µm.
+
+    Raises
+    ------
+    ConfigError
+        If it takes longer than ``budget.cpu_hours``.
+    """
+    scheme, options, most = scheme_of(config), options_of(config), config.budget.cpu_hours
+    seconds = spectra * sum(scheme.cost(options, d).seconds for d in diameters.tolist())
+    hours = seconds / 3600
+    if hours > most:
+        raise ConfigError(
+            f"budget.cpu_hours: {most:g} given, but {what.format(scheme.name)} about "
+            f"{hours:.2g} h; raise it to confirm, or give fewer {section}.diameters"
+        )
 
 
 def waves_of(config: Config) -> Config:

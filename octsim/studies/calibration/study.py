@@ -7,14 +7,12 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import CubicSpline
 
-from octsim.base.errors import ConfigError
 from octsim.base.threads import each
 from octsim.config.derive import by_rays
 from octsim.config.maxwell import beyond_maxwell
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.config.scene_keys import variable_name
-from octsim.config.scheme import options_of, scheme_of
 from octsim.datasets.files import flags, make
 from octsim.instrument.points import Points
 from octsim.optics.two_beams import predicted_phase_slope
@@ -29,6 +27,7 @@ from octsim.studies.calibration.scheme import (
     converged,
     paths_of,
     rays_because,
+    require_budget,
     waves_of,
 )
 from octsim.studies.calibration.slopes import bench_of, slopes_at
@@ -89,7 +88,8 @@ def calibration(
     """
     own, line = converged(config), focus_line(config, law)
     diameters = config.calibration.diameters.values()
-    _require_budget(own, diameters)
+    spectra = _POINTS * (len(parameters_of(own)) + 4)
+    require_budget(own, "calibration", "a calibration by scheme {} takes", spectra, diameters)
     foci = line.at(diameters)
     processing = calibrating(config), by_fft(config)
     bench = bench_of(own, _others(config), processing, line.slope, points)
@@ -115,19 +115,6 @@ def _others(config: Config) -> dict[str, Config]:
     return {
         "rays_phase_slope": by_rays(config, RAYS), "light_paths_phase_slope": paths_of(config),
     } | waves  # fmt: skip
-
-
-def _require_budget(own: Config, diameters: Array) -> None:
-    """Refuse what takes longer than is confirmed."""
-    scheme, options = scheme_of(own), options_of(own)
-    number = _POINTS * (len(parameters_of(own)) + 4)
-    seconds = number * sum(scheme.cost(options, d).seconds for d in diameters.tolist())
-    hours, most = seconds / 3600, own.budget.cpu_hours
-    if hours > most:
-        raise ConfigError(
-            f"budget.cpu_hours: {most:g} given, but a calibration by scheme {scheme.name} takes "
-            f"about {hours:.2g} h; raise it to confirm, or give fewer calibration.diameters"
-        )
 
 
 def interpolation_error(diameter: Array, slope: Array) -> Array:

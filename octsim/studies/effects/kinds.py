@@ -132,6 +132,7 @@ EFFECTS: tuple[Effect, ...] = (
            shell("membrane", 1.46, "5 nm"), alone=True),
     Effect("myelin 100 nm", "scene", "a shell of index 1.44",
            shell("myelin", 1.44, "100 nm"), alone=True),
-    Effect("cover glass at 5 um", "scene", "a second plane above the water", cover, alone=True),
+    Effect("cover glass at 5 um", "scene", "a second plane above the water",
+           cover("5 um"), alone=True),
 )  # fmt: skip
 """Every effect that is tried, at the sizes of docs/effects.md."""

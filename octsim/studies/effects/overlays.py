@@ -148,14 +148,18 @@ def shell(medium: str, index: float, thickness: str) -> OverlayOf:
     return overlay
 
 
-def cover(config: Config) -> Overlay | None:
-    """Put a second slide above the water."""
-    scene = config.scene
-    if len(scene.layers) != 2 or not scene.cylinders:
-        return None
-    glass, water = scene.objective_medium, scene.host_medium
-    between = {"medium": water, "thickness": "5 um"}
-    return nested("scene.layers", [glass, between, glass])
+def cover(height: str) -> OverlayOf:
+    """Put a second slide above the water, so high above the first."""
+
+    def overlay(config: Config) -> Overlay | None:
+        scene = config.scene
+        if len(scene.layers) != 2 or not scene.cylinders:
+            return None
+        glass, water = scene.objective_medium, scene.host_medium
+        between = {"medium": water, "thickness": height}
+        return nested("scene.layers", [glass, between, glass])
+
+    return overlay
 
 
 def polarised(state: object, analyser: object = None) -> OverlayOf:

@@ -1,22 +1,20 @@
 """Expansion by what? Phases and spectra as a neuron's diameter, gap, index and shells change."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from octsim.base.errors import ConfigError
 from octsim.base.threads import each
 from octsim.config.models import Config
-from octsim.config.scheme import options_of, scheme_of
 from octsim.datasets.files import flags, make
 from octsim.instrument.points import Points
 from octsim.phase.derivatives import Array
 from octsim.schemes.light import AccuracyStatus
 from octsim.stages.focus_law import focus_line
 from octsim.studies.calibration.parameters import parameters_of
-from octsim.studies.calibration.scheme import ModelStatus, converged, rays_because
+from octsim.studies.calibration.scheme import ModelStatus, converged, rays_because, require_budget
 from octsim.studies.responses.at_diameter import Bench, responses_at, shifts_at
 from octsim.studies.responses.observables import bands_of, observables_of
 from octsim.studies.responses.quantities import CONFIGURED, quantities_of, variants_of
@@ -69,7 +67,9 @@ def responses(
     """
     own, line = converged(config), focus_line(config, law)
     diameters = diameters_of(config)
-    _require_budget(own, diameters)
+    # of each quantity five spectra, of each parameter four, and of a scene with a membrane
+    spectra = (len(quantities_of(own)) + 1) * (4 * len(parameters_of(own)) + 10)
+    require_budget(own, "responses", "responses by scheme {} take", spectra, diameters)
     variants = variants_of(own)
     benches = {
         name: Bench(one, quantities_of(one), line.slope, points) for name, one in variants.items()
@@ -79,7 +79,8 @@ def responses(
     rows = list(each(lambda task: responses_at(*task), tasks, threads))
     believed = benches[CONFIGURED]
     shifts = list(each(lambda place: shifts_at(believed, *place), places, threads))
-    names = [one.name for one in max((b.quantities for b in benches.values()), key=len)]
+    quantities = max((bench.quantities for bench in benches.values()), key=len)
+    names = [one.name for one in quantities]
     kept = [rows[len(places) * at : len(places) * (at + 1)] for at in range(len(benches))]
     observables = observables_of(config)
     k = config.spectrum.wavenumbers()
@@ -90,7 +91,7 @@ def responses(
         _variables(own, kept, names, shifts)
         | {
             "focus": ("diameter", line.at(diameters)),
-            "quantity_unit": ("quantity", _units(benches)),
+            "quantity_unit": ("quantity", [one.unit for one in quantities]),
             "band_min": ("band", np.array([band[0] for band in bands_of(config)])),
             "band_max": ("band", np.array([band[1] for band in bands_of(config)])),
             "photons": config.action_potential.photons,
@@ -101,24 +102,6 @@ def responses(
             "parameter": list(parameters_of(own)),
         },
     )  # fmt: skip
-
-
-def _units(benches: Mapping[str, Bench]) -> list[str]:
-    return [one.unit for one in max((b.quantities for b in benches.values()), key=len)]
-
-
-def _require_budget(own: Config, diameters: Array) -> None:
-    """Refuse what takes longer than is confirmed."""
-    scheme, options, quantities = scheme_of(own), options_of(own), len(quantities_of(own))
-    # of each quantity five spectra, of each parameter four, and of a scene with a membrane
-    number = (quantities + 1) * (4 * len(parameters_of(own)) + 10)
-    hours = number * sum(scheme.cost(options, d).seconds for d in diameters.tolist()) / 3600
-    most = own.budget.cpu_hours
-    if hours > most:
-        raise ConfigError(
-            f"budget.cpu_hours: {most:g} given, but responses by scheme {scheme.name} take about "
-            f"{hours:.2g} h; raise it to confirm, or give fewer responses.diameters"
-        )
 
 
 def _filled(rows: Sequence[Array], axes: tuple[int, ...], quantities: int) -> Array:

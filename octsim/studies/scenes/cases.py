@@ -10,7 +10,7 @@ from octsim.config.checks import impossible
 from octsim.config.derive import by_light_paths, by_waves, counting_rays, merge, validated
 from octsim.config.models import Config
 from octsim.config.units import format_angle, format_length
-from octsim.studies.effects.overlays import Overlay, of_cylinder, shell
+from octsim.studies.effects.overlays import Overlay, cover, of_cylinder, shell
 
 AS_CONFIGURED = "as configured"
 SCHEMES = ("vogel", "paths", "fullwave")
@@ -124,7 +124,7 @@ def _varied(config: Config) -> Iterator[tuple[str, float, str, Overlay]]:
         laid = of_cylinder(elevation=f"{degrees} deg")(config)
         yield from _laid("elevation", degrees, "°", laid)
     for height in _COVERS:
-        yield from _laid(_COVER, height, "µm", _cover(config, height))
+        yield from _laid(_COVER, height, "µm", cover(f"{height} um")(config))
 
 
 def _laid(
@@ -152,13 +152,3 @@ def _neighbour(config: Config, beside: float) -> Overlay:
         "gap": format_length(scene.gap_of(own)), "azimuth": format_angle(own.azimuth),
     }  # fmt: skip
     return {"scene": {"cylinders": [*config.to_dict()["scene"]["cylinders"], other]}}
-
-
-def _cover(config: Config, height: float) -> Overlay | None:
-    """Put a second slide above the cylinders."""
-    scene = config.scene
-    if len(scene.layers) != 2:
-        return None
-    glass, water = scene.objective_medium, scene.host_medium
-    between = {"medium": water, "thickness": f"{height} um"}
-    return {"scene": {"layers": [glass, between, glass]}}

@@ -17,6 +17,7 @@ from octsim.phase.derivatives import wrapped
 from octsim.phase.fringe_status import FringeStatus
 from octsim.schemes.light import AccuracyStatus
 from octsim.stages.focus_law import focus_line
+from octsim.studies.detector.over_diameter import mean_of_known, root_mean_square
 from octsim.studies.scenes.cases import SCHEMES, Case, CaseStatus, cases
 from octsim.studies.scenes.tolerated import TOLERANCE, tolerated
 from octsim.studies.validity.errors import ESTIMATORS, FOCUS_MODES, Seen, seen
@@ -115,17 +116,16 @@ def _variables(
     change = slope - slope[:1]
     kinds = ("case", "scheme", "focus_mode", "estimator")
     known = np.isfinite(change)
-    count = known.sum(axis=-1)
-    some = np.where(count > 1, count, np.nan)
-    mean = np.where(known, change, 0.0).sum(axis=-1) / some
-    off = np.where(known, change - mean[..., np.newaxis], 0.0)
-    worst = np.where(count > 1, np.where(known, np.abs(change), 0.0).max(axis=-1), np.nan)
+    several = known.sum(axis=-1) > 1
+    of_several = np.where(several[..., np.newaxis], change, np.nan)
+    mean = mean_of_known(of_several)
+    worst = np.where(several, np.where(known, np.abs(change), 0.0).max(axis=-1), np.nan)
     moved = wrapped(phase - phase[:1])
     return {
         "scene_phase_slope": ((*kinds, "diameter"), slope),
         "scene_slope_change": ((*kinds, "diameter"), change),
         "scene_mean_change": (kinds, mean),
-        "scene_change_scatter": (kinds, np.sqrt((off**2).sum(axis=-1) / some)),
+        "scene_change_scatter": (kinds, root_mean_square(of_several - mean[..., np.newaxis])),
         "scene_worst_change": (kinds, worst),
         "scene_phase_change": (("case", "scheme", "diameter"), moved),
         "tolerated": (("case", "scheme"), tolerated(every, slope)),

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.studies.detector.over_diameter import mean_of_known, root_mean_square
 from octsim.studies.scenes.cases import Case
 from octsim.studies.validity.errors import ESTIMATORS, FOCUS_MODES
 
@@ -41,9 +42,7 @@ def tolerated(every: Sequence[Case], slope: Array) -> Array:
             continue
         step = every[beside[0]].value - case.value
         rate = (held[beside[0]] - held[row]) / step
-        known = np.isfinite(rate)
-        count = np.where(known.any(axis=-1), known.sum(axis=-1), np.nan)
-        rms = np.sqrt((np.where(known, rate, 0.0) ** 2).sum(axis=-1) / count)
-        mean = np.abs(np.where(known, held[row], 0.0).sum(axis=-1) / count)
+        rms = root_mean_square(rate)
+        mean = np.abs(mean_of_known(np.where(np.isfinite(rate), held[row], np.nan)))
         found[row] = np.where(rms > 0, TOLERANCE * mean / np.where(rms > 0, rms, 1.0), np.nan)
     return found
