@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from math import log2
 from typing import Any
 
+from octsim.config.additions import additions_to
 from octsim.config.derive import parts_of
 from octsim.config.light import FibreMode
 from octsim.config.models import Config
@@ -44,15 +45,25 @@ def rate_name(config: Config) -> str:
     name = scheme_of(config).rate_name(options_of(config))
     if pieces := pieces_of_tree(config):
         name = f"{name} tree {round(log2(pieces))}"
+    if (times := scheme_of(config).times(additions_to(config.scene))) != 1:
+        name = f"{name} times {2 ** round(log2(times))}"
     if way_varies(config):
         return f"{name} by wavenumber"
     return f"{name} sampled" if sampled(config) else name
 
 
+def cost_by(
+    scheme: Scheme, options: Mapping[str, Any], config: Config, diameter: float
+) -> PointCost:
+    """Return what a point of a diameter (µm) takes by a scheme in the scene of a config."""
+    cost = scheme.cost(options, diameter)
+    return cost._replace(seconds=cost.seconds * scheme.times(additions_to(config.scene)))
+
+
 def point_cost(config: Config) -> PointCost:
     """Return what a point of a plain config takes, by rates measured on one machine."""
     scheme = scheme_of(config)
-    cost = scheme.cost(options_of(config), config.sweep.diameters.stop)
+    cost = cost_by(scheme, options_of(config), config, config.sweep.diameters.stop)
     if pieces := pieces_of_tree(config):
         cost = of_tree(cost, pieces)
     if sampled(config):

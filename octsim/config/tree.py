@@ -3,8 +3,9 @@
 from collections.abc import Iterator
 from itertools import pairwise
 
+from octsim.config.additions import additions_to, inwards
 from octsim.config.models import Config
-from octsim.config.scene import CylinderConfig, SceneConfig
+from octsim.config.scene import SceneConfig
 from octsim.schemes.cost import MOST_PIECES, tree_pieces
 from octsim.schemes.table import SCHEMES
 
@@ -18,7 +19,7 @@ def pieces_of_tree(config: Config) -> float | None:
     tracing, scene = config.tracing, config.scene
     if not SCHEMES[tracing.scheme].counts_rays or not scene.cylinders:
         return None
-    surfaces = _more_surfaces(scene)
+    surfaces = additions_to(scene).surfaces
     if not surfaces and tracing.max_intersections == _THESIS and not tracing.min_amplitude:
         return None
     return tree_pieces(surfaces, tracing.max_intersections, tracing.min_amplitude)
@@ -29,32 +30,13 @@ def paths_by_digits(scene: SceneConfig) -> int:
     planes = _changes([layer.medium for layer in scene.layers])
     if not scene.cylinders:
         return planes
-    walls = [_changes(_inwards(scene, one)) for one in scene.cylinders]
+    walls = [_changes(inwards(scene, one)) for one in scene.cylinders]
     lone = planes == 1 and walls == [1] and not scene.cylinders[0].elevation
     return 2 if lone else 0
 
 
-def _inwards(scene: SceneConfig, cylinder: CylinderConfig) -> list[str]:
-    return [scene.host_medium, *(shell.medium for shell in cylinder.shells), cylinder.medium]
-
-
 def _changes(media: list[str]) -> int:
     return sum(one != other for one, other in pairwise(media))
-
-
-def _more_surfaces(scene: SceneConfig) -> int:
-    """Return how many planes and walls there are on a way that the thesis's scene does not have.
-
-    Without contrast they split nothing.
-    """
-
-    def contrasts(media: list[str]) -> int:
-        index = scene.refractive_index.of
-        return sum(index[one] != index[other] for one, other in pairwise(media))
-
-    planes = contrasts([layer.medium for layer in scene.layers])
-    walls = (contrasts(_inwards(scene, one)) for one in scene.cylinders)
-    return max(0, planes - 1 + max(walls) - 1)
 
 
 def impossible_tree(config: Config) -> Iterator[str]:

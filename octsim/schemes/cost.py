@@ -66,6 +66,23 @@ class PointCost(NamedTuple):
     """Bytes to work in, beyond those of any process."""
 
 
+class Additions(NamedTuple):
+    """What a scene has beside the thesis's one cylinder over one plane, as far as it takes time."""
+
+    surfaces: int = 0
+    """Planes, and walls of a cylinder, on a way of light that they split."""
+    neighbours: int = 0
+    """Other cylinders."""
+    apart: float = 0.0
+    """How far the axes of cylinders are from each other at most, µm."""
+    cover: float = 0.0
+    """Height of a plane above the cylinders over that below them, µm; 0 of none."""
+    aside: bool = False
+    """Whether a cylinder is off the optical axis."""
+    tilted: bool = False
+    """Whether a cylinder is not level."""
+
+
 def of_rays(options: Mapping[str, Any], _diameter: float) -> PointCost:
     """Return what counted rays take."""
     rays = options["rays"]
@@ -133,3 +150,26 @@ def of_paths(options: Mapping[str, Any], _diameter: float) -> PointCost:
         size=_RAY_BYTES * 45 * 10 ** (0.18 * digits), seconds=4.7e-4 * 10 ** (0.145 * digits),
         paths=12, memory=0.0,
     )  # fmt: skip
+
+
+def times_of_waves(added: Additions) -> float:
+    """Return how many times as long waves take for what a scene has more; within threefold."""
+    times = 1 + 0.5 * bool(added.surfaces)
+    if added.cover:
+        # light from above is out of focus, and takes the more nodes over k_x, k_y and k
+        times *= 4 + 0.5 * added.cover**2.2
+    # each sends to each
+    return times * (1 + 5 * added.neighbours * (added.neighbours + 1) * (0.3 + added.apart))
+
+
+def times_of_paths(added: Additions) -> float:
+    """Return how many times as long light paths take for what a scene has more; within threefold.
+
+    Most is for the many faint ones, each with its own edges.
+    """
+    times = 5.0 if added.surfaces else 1.0
+    if added.tilted:
+        times *= 25
+    if added.neighbours:
+        return times * 7 * (added.neighbours + 1)
+    return 2 * times if added.aside else times

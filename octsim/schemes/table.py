@@ -15,7 +15,15 @@ from enum import Enum
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from octsim.schemes.cost import PointCost, of_paths, of_rays, of_waves
+from octsim.schemes.cost import (
+    Additions,
+    PointCost,
+    of_paths,
+    of_rays,
+    of_waves,
+    times_of_paths,
+    times_of_waves,
+)
 
 if TYPE_CHECKING:
     # the config reads this table, and needs no compiler for it
@@ -70,6 +78,8 @@ class Scheme:
     """The one of them that decides what a point takes."""
     cost: Callable[[Options, float], PointCost]
     """Returns what a point of a diameter (µm) takes, typically; the same on all machines."""
+    times: Callable[[Additions], float] = lambda _: 1.0
+    """Returns how many times as long it takes for what a scene has beside the thesis's."""
     light: str = "rays"
     """What its light is: rays, each with its field, or waves, a field without any."""
     counts_rays: bool = False
@@ -164,6 +174,7 @@ LIGHT_PATHS = Scheme(
     options=("accuracy",),
     effort="accuracy",
     cost=of_paths,
+    times=times_of_paths,
     controls_error=True,
     honours=_OF_RAYS,
     steepest=0.92,
@@ -179,6 +190,7 @@ FULL_WAVE = Scheme(
     options=("accuracy",),
     effort="accuracy",
     cost=of_waves,
+    times=times_of_waves,
     light="waves",
     controls_error=True,
     honours=_OF_BOTH

@@ -8,18 +8,18 @@ from numpy.typing import NDArray
 
 from octsim.config.maxwell import beyond_maxwell, by_maxwell
 from octsim.config.models import Config
-from octsim.config.scheme import scheme_of
+from octsim.config.scheme import cost_by, scheme_of
 from octsim.instrument.instrument import Instrument
 from octsim.phase.local_slopes import local_slope
-from octsim.schemes.cost import of_waves
 from octsim.schemes.light import AccuracyStatus
+from octsim.schemes.table import FULL_WAVE
 
 Array = NDArray[np.float64]
 ACCURACY = 1e-3
 """Of the spectra: largest error of the intensity over the largest intensity."""
 DIAMETERS = 5
 """How many diameters of a sweep are compared."""
-MOST_SECONDS = 2.0
+MOST_SECONDS = 10.0
 """Processor time, by the table of costs, above which a run does not wait for it."""
 
 
@@ -101,7 +101,7 @@ def _before(config: Config, foci: Array) -> ExactStatus:
         return ExactStatus.OTHER_ESTIMATOR
     if not np.isfinite(foci).all():
         return ExactStatus.NO_FOCUS
-    point = of_waves({"accuracy": ACCURACY}, config.sweep.diameters.stop)
+    point = cost_by(FULL_WAVE, {"accuracy": ACCURACY}, config, config.sweep.diameters.stop)
     if 3 * DIAMETERS * point.seconds > MOST_SECONDS:
         return ExactStatus.TOO_LONG
     return ExactStatus.COMPARED

@@ -27,6 +27,8 @@ Wavefront = Callable[[Array, Array], Array]
 and along it, in which it is even."""
 
 
+_AT_ONCE = 200_000
+"""Points of the integrals, at all wavenumbers, that fast memory holds."""
 Both = tuple[Array, Array]
 _Sent = tuple[Array, Both, Both | None]
 """A factor of all, and E_y and H_y of light that reaches the axis upwards, and downwards."""
@@ -105,32 +107,57 @@ def illumination(
     sine = np.hypot(across, sideways)
     below, above = normal(scene.n_glass, sine), normal(scene.n_water, sine)
     classes = mirror_waves(np.arctan2(across, above.real), waves)
-    wavenumber = k[:, np.newaxis, np.newaxis]
-    weight = np.stack([pupil.amplitude(sine, aperture, one) for one in k.tolist()])
     # both halves of the integral over k_x
     measure = reach * w * np.sqrt(scene.n_glass / below)
-    size = weight * measure
-    of_class = _over_classes(scene, across, sideways, aperture, wavenumber, wavefront)
-    lit_by = _through_plane if scene.one_plane else _through_stacks
-    found = []
-    for polarisation, (travel, upwards, downwards) in enumerate(
-        lit_by(scene, focus, across, sideways, wavenumber)
-    ):
-        reaching = size * travel
-        for turned, part_of in enumerate(of_class):
-            mirror = polarisation ^ turned
-            part = reaching * part_of
-            # a matrix for each k_y, over all wavenumbers
-            sides = [
-                _over_across(part * field, waves_of)
-                for field, waves_of in zip(upwards, classes[mirror], strict=True)
-            ]
-            if downwards:
-                for at, waves_of in enumerate(classes[mirror]):
-                    back = _over_across(part * downwards[at], waves_of)
-                    sides[at] += downward_signs(waves + 1, mirror)[at] * back
-            found.append(Lit(polarisation, mirror, *sides))
-    return found
+
+    def lit_at(k: NDArray[np.float64]) -> list[Lit]:
+        weight = np.stack([pupil.amplitude(sine, aperture, one) for one in k.tolist()])
+        size, wavenumber = weight * measure, k[:, np.newaxis, np.newaxis]
+        of_class = _over_classes(scene, across, sideways, aperture, wavenumber, wavefront)
+        sent = _through_plane if scene.one_plane else _through_stacks
+        return [
+            _waves_of(polarisation, turned, size * one[0] * part_of, one, classes)
+            for polarisation, one in enumerate(sent(scene, focus, across, sideways, wavenumber))
+            for turned, part_of in enumerate(of_class)
+        ]
+
+    at_once = max(1, _AT_ONCE // across.size)
+    parts = [lit_at(k[first : first + at_once]) for first in range(0, k.size, at_once)]
+    return [
+        Lit(*same[0][:2], *(np.concatenate([one[side] for one in same]) for side in (2, 3)))
+        for same in zip(*parts, strict=True)
+    ]
+
+
+def _waves_of(
+    polarisation: int, turned: int, reaching: Array, sent: _Sent, classes: tuple[Both, Both]
+) -> Lit:
+    """Return the waves of light of one polarisation, even or odd in k_x.
+
+    Parameters
+    ----------
+    polarisation : int
+    turned : int
+        0 even, 1 odd.
+    reaching : ndarray, shape (K, Y, X)
+        Weight and phase.
+    sent
+        Its field.
+    classes
+        e^{imβ} of both mirror classes.
+    """
+    mirror = polarisation ^ turned
+    _, upwards, downwards = sent
+    # a matrix for each k_y, over all wavenumbers
+    sides = [
+        _over_across(reaching * field, waves_of)
+        for field, waves_of in zip(upwards, classes[mirror], strict=True)
+    ]
+    if downwards:
+        for at, waves_of in enumerate(classes[mirror]):
+            back = _over_across(reaching * downwards[at], waves_of)
+            sides[at] += downward_signs(back.shape[-1], mirror)[at] * back
+    return Lit(polarisation, mirror, *sides)
 
 
 def _through_plane(

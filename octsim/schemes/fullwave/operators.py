@@ -2,8 +2,9 @@
 
 import threading
 from collections import OrderedDict
+from collections.abc import Callable
 from concurrent.futures import Future
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from octsim.schemes.fullwave.slab import Planes, planes_of
 
 Array = NDArray[Any]
 _KEPT = 6
+Kept = TypeVar("Kept")
 
 
 class Operator(NamedTuple):
@@ -70,24 +72,30 @@ class Operators:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._kept: OrderedDict[tuple[object, ...], Future[Operator]] = OrderedDict()
+        self._kept: OrderedDict[tuple[object, ...], Future[Any]] = OrderedDict()
 
     def of(
         self, scene: CylinderOnPlane, aperture: float, k: NDArray[np.float64], orders: Orders
     ) -> Operator:
-        """Return an operator, made or kept."""
+        """Return the operator of a scene, made or kept."""
         # the offset and the nodes over k_x are the illumination's
-        key = scene._replace(offset=0.0), aperture, k.tobytes(), orders._replace(across=0)
+        return self.kept(
+            (scene._replace(offset=0.0), aperture, k.tobytes(), orders._replace(across=0)),
+            lambda: operator(scene, aperture, k, orders),
+        )
+
+    def kept(self, key: tuple[object, ...], make: Callable[[], Kept]) -> Kept:
+        """Return what a function makes, or made for the same key before."""
         with self._lock:
-            found, wanted = self._kept.pop(key, None), Future[Operator]()
+            found, wanted = self._kept.pop(key, None), Future[Kept]()
             self._kept[key] = found or wanted
             while len(self._kept) > _KEPT:
                 self._kept.popitem(last=False)
         if found:
-            return found.result()
+            return cast(Kept, found.result())
         # without the lock, so that threads make theirs at the same time
         try:
-            wanted.set_result(operator(scene, aperture, k, orders))
+            wanted.set_result(make())
         except BaseException as error:
             with self._lock:
                 self._kept.pop(key, None)  # whoever asks next tries again

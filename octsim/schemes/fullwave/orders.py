@@ -1,6 +1,8 @@
 """How many partial waves and nodes a point takes: where to begin, how to go on, where to stop."""
 
+import itertools
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -36,10 +38,6 @@ class Orders(NamedTuple):
         # resonances along the cylinder make this integral the slowest to converge
         return Orders(waves, across, contour, self.along + max(3, math.ceil(0.35 * self.along)))
 
-    def with_those(self, other: "Orders") -> "Orders":
-        """Return what is enough for another point as well."""
-        return Orders(*map(max, self, other))
-
     @property
     def within_budget(self) -> bool:
         """Whether it is not more than is ever solved for."""
@@ -52,9 +50,20 @@ class Orders(NamedTuple):
 
 
 def first_orders(
+    cylinders: Sequence[CylinderOnPlane], aperture: float, focus: float, largest_k: float,
+    accuracy: float,
+) -> Orders:  # fmt: skip
+    """Return orders that are usually enough."""
+    each = (_orders_of(one, aperture, focus, largest_k, accuracy) for one in cylinders)
+    largest = Orders(*map(max, zip(*each, strict=True)))
+    # the phase of what they send to each other turns the faster with k_y the farther they are apart
+    turns = largest_k * apart(cylinders) * _behind(cylinders[0].n_water, aperture)
+    return largest._replace(along=largest.along + math.ceil(0.55 * turns))
+
+
+def _orders_of(
     scene: CylinderOnPlane, aperture: float, focus: float, largest_k: float, accuracy: float
 ) -> Orders:
-    """Return orders that are usually enough."""
     digits = -math.log10(accuracy)
     size = largest_k * scene.radius * scene.largest_index
     spread = abs(_defocus(scene, aperture, focus)) * largest_k
@@ -63,10 +72,21 @@ def first_orders(
     from_above = max(largest_k * abs(_defocus_from_above(scene, aperture, focus)) - spread, 0.0)
     return Orders(
         math.ceil(partial_waves(size, digits)),
-        math.ceil(3 + digits + 0.25 * (size + spread) + 0.5 * sideways + from_above),
-        math.ceil(14 + size),
-        math.ceil(2 + 0.75 * digits + 0.85 * size + 0.5 * spread + 0.65 * from_above),
+        math.ceil(3 + digits + 0.25 * (size + spread) + 0.5 * sideways + 1.1 * from_above),
+        math.ceil(14 + size + 0.6 * math.sqrt(from_above)),
+        math.ceil(2 + 0.75 * digits + 0.85 * size + 0.5 * spread + 0.9 * from_above),
     )  # fmt: skip
+
+
+def apart(cylinders: Sequence[CylinderOnPlane]) -> float:
+    """Return the largest distance between axes, µm; 0 of one cylinder."""
+    return max(
+        (
+            math.hypot(one.offset - other.offset, one.height - other.height)
+            for one, other in itertools.combinations(cylinders, 2)
+        ),
+        default=0.0,
+    )
 
 
 def waves_along(
@@ -113,16 +133,19 @@ def _behind(index: float, aperture: float) -> float:
 
 
 def first_nodes(
-    scene: CylinderOnPlane, aperture: float, focus: float, band: tuple[float, float],
-    accuracy: float,
+    cylinders: Sequence[CylinderOnPlane], aperture: float, focus: float,
+    band: tuple[float, float], accuracy: float,
 ) -> int:  # fmt: skip
-    """Return the wavenumbers in a band that are usually enough."""
+    """Return the wavenumbers in a band that are usually enough, for the first cylinder's middle."""
+    scene = cylinders[0]
     # the plane's light of the pupil's rim is apart from that of the axis by the focus's distance
     rim = 2 * focus * (scene.n_glass - math.sqrt(scene.n_glass**2 - aperture**2))
     reach = max(scene.far_side, abs(rim - scene.far_side))
     if scene.above:
         # what goes to and fro below them is the farther the more digits are asked for
         reach *= 1 - 0.25 * math.log10(accuracy)
+    # what neighbours send to each other comes later
+    reach += 0.75 * scene.n_water * apart(cylinders)
     return _nodes(reach, band, accuracy) + 2 * bool(scene.shells)
 
 

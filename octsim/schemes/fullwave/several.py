@@ -16,13 +16,14 @@ from octsim.optics.pupil import Pupil
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane
 from octsim.schemes.fullwave.illumination import Wavefront, illumination
 from octsim.schemes.fullwave.neighbours import (
+    Between,
     Step,
     back_to_itself,
-    straight,
-    through_planes,
+    between,
     to_another,
+    write,
 )
-from octsim.schemes.fullwave.operators import along_nodes
+from octsim.schemes.fullwave.operators import Operators, along_nodes
 from octsim.schemes.fullwave.orders import Orders
 from octsim.schemes.fullwave.shells import scattering_of
 from octsim.schemes.fullwave.slab import parities
@@ -54,12 +55,29 @@ class Collected(NamedTuple):
     """Complex ones that it took, about."""
 
 
+class Together(NamedTuple):
+    """What neither focus nor pupil matters to, at K wavenumbers and Y components k_y > 0."""
+
+    along: NDArray[np.float64]
+    """k_y / k, (Y,)."""
+    along_weight: NDArray[np.float64]
+    waves: list[int]
+    """Largest order of each cylinder."""
+    matrices: list[list[Array]]
+    """T of each, its terms, (K, Y, 2, 2, 2M + 1)."""
+    reached: list[list[list[Between]]]
+    """At each wavenumber, of each cylinder: what it gets from each."""
+    multiplications: float
+    """Complex ones that it took, about."""
+
+
 def several(
     cylinders: tuple[CylinderOnPlane, ...],
     lights: Lights,
     k: NDArray[np.float64],
     orders: Orders,
     tolerance: float,
+    operators: Operators,
 ) -> Collected:
     """Return what the detector collects of cylinders that scatter to each other.
 
@@ -74,29 +92,29 @@ def several(
         Of the largest cylinder.
     tolerance : float
         Of what goes to and fro.
+    operators : Operators
+        Those kept.
     """
-    along, weight = along_nodes(lights.aperture, orders.along)
-    waves = _waves_of_each(cylinders, orders.waves)
+    kept = operators.kept(
+        (cylinders, lights.aperture, k.tobytes(), orders._replace(across=0)),
+        lambda: together(cylinders, lights.aperture, k, orders),
+    )
+    along, waves = kept.along, kept.waves
     lit = [
         _regular(one, lights, along, k, m, orders) for one, m in zip(cylinders, waves, strict=True)
     ]
-    matrices = [
-        [both_signs(t) for t in scattering_of(one, along, k, m)]
-        for one, m in zip(cylinders, waves, strict=True)
-    ]
     epsilon = cylinders[0].n_water ** 2
-    measure = weight * 2 / (np.pi * (epsilon - along**2))
+    measure = kept.along_weight * 2 / (np.pi * (epsilon - along**2))
     collected = np.zeros((3, 2, k.size), np.complex128)
-    taken = 0.0
-    for number, wavenumber in enumerate(k.tolist()):
-        between = _between(cylinders, along, wavenumber, waves, orders)
+    taken = kept.multiplications
+    for number in range(k.size):
         regular = np.concatenate([_flat(one[:, number]) for one in lit], axis=-1)
-        whole = [t[0][number] for t in matrices]
-        incoming, steps = _incoming(between, whole, regular, tolerance)
-        size = between.shape[-1]
-        taken += along.size * (steps * size**2 + 4 * size**2 * orders.contour)
+        whole = [t[0][number] for t in kept.matrices]
+        back = _whole_matrix(kept.reached[number], waves)
+        incoming, steps = _incoming(back, whole, regular, tolerance)
+        taken += along.size * steps * back.shape[-1] ** 2
         place = 0
-        for one, t, m in zip(lit, matrices, waves, strict=True):
+        for one, t, m in zip(lit, kept.matrices, waves, strict=True):
             width = 2 * (2 * m + 1)
             a = incoming[..., place : place + width].reshape(2, along.size, 2, 2 * m + 1)
             place += width
@@ -114,6 +132,25 @@ def several(
                         (found * turn).sum(-1) * measure
                     ).sum()
     return Collected(collected, taken)
+
+
+def together(
+    cylinders: tuple[CylinderOnPlane, ...],
+    aperture: float,
+    k: NDArray[np.float64],
+    orders: Orders,
+) -> Together:
+    """Return how cylinders scatter, and what goes between them; parameters as of `several`."""
+    along, weight = along_nodes(aperture, orders.along)
+    waves = _waves_of_each(cylinders, orders.waves)
+    matrices = [
+        [both_signs(t) for t in scattering_of(one, along, k, m)]
+        for one, m in zip(cylinders, waves, strict=True)
+    ]
+    reached = [_reached(cylinders, along, one, waves, orders) for one in k.tolist()]
+    # each of the light that planes send, times its powers, in six sums
+    sums = 8 * 4 * max(waves) * orders.contour * len(cylinders) ** 2
+    return Together(along, weight, waves, matrices, reached, float(along.size * k.size * sums))
 
 
 def _waves_of_each(cylinders: tuple[CylinderOnPlane, ...], waves: int) -> list[int]:
@@ -150,30 +187,35 @@ def both_signs(matrix: Array) -> Array:
     return np.moveaxis(np.concatenate([mirrored, matrix], axis=-1), (0, 1), (2, 3))
 
 
-def _between(
+def _reached(
     cylinders: tuple[CylinderOnPlane, ...], along: NDArray[np.float64], k: float,
     waves: list[int], orders: Orders,
-) -> Array:  # fmt: skip
-    """Return R from all outgoing waves to all regular ones, (Y, N, N)."""
-    rows = []
-    for to, waves_to in zip(cylinders, waves, strict=True):
-        row = []
-        for of, waves_of in zip(cylinders, waves, strict=True):
-            step = Step(of, to)
+) -> list[list[Between]]:  # fmt: skip
+    """Return what each cylinder gets of the outgoing waves of each, itself as well."""
+    number = len(cylinders)
+    found: dict[tuple[int, int], Between] = {}
+    for to in range(number):
+        own = back_to_itself(cylinders[to], along, k, waves[to], orders.contour)
+        found[to, to] = between(Step(cylinders[to], cylinders[to]), own, along, k, 2 * waves[to])
+        for of in range(to):
+            step, farthest = Step(cylinders[of], cylinders[to]), waves[to] + waves[of]
             nodes = math.ceil(orders.contour * (1 + _TURNS * k * abs(step.across)))
-            by = (
-                back_to_itself(of, along, k, waves_of, orders.contour)
-                if of is to
-                else to_another(step, along, k, waves_to + waves_of, nodes)
-            )
-            part = through_planes(step, by, along, k, waves_to, waves_of)
-            if of is not to:
-                direct = straight(step, along, k, waves_to, waves_of)
-                part[:, 0, :, 0] += direct
-                part[:, 1, :, 1] += direct
-            row.append(part.reshape(along.size, 2 * (2 * waves_to + 1), -1))
-        rows.append(np.concatenate(row, axis=-1))
-    return np.concatenate(rows, axis=-2)
+            by = to_another(step, along, k, farthest, nodes)
+            found[to, of] = between(step, by, along, k, farthest)
+            found[of, to] = found[to, of].back()
+    return [[found[to, of] for of in range(number)] for to in range(number)]
+
+
+def _whole_matrix(reached: list[list[Between]], waves: list[int]) -> Array:
+    """Return R from all outgoing waves to all regular ones, (Y, N, N)."""
+    sizes = [2 * (2 * m + 1) for m in waves]
+    ends = np.cumsum([0, *sizes])
+    found = np.empty((len(reached[0][0].by_sum), ends[-1], ends[-1]), np.complex128)
+    for to, row in enumerate(reached):
+        for of, one in enumerate(row):
+            part = found[:, ends[to] : ends[to + 1], ends[of] : ends[of + 1]]
+            write(part, one, waves[to], waves[of])
+    return found
 
 
 def _flat(waves: Array) -> Array:

@@ -118,7 +118,7 @@ def _field_in_place(
     scene, pupil, aperture, focus = point[:4]
     if point.neighbours:
         lights = Lights(pupil, aperture, focus, point.wavefront)
-        found = several((scene, *point.neighbours), lights, k, orders, tolerance)
+        found = several((scene, *point.neighbours), lights, k, orders, tolerance, operators)
     else:
         found = _of_one(point, k, orders, tolerance, operators)
     radial = radial_nodes(aperture, scene.n_glass, abs(focus) + scene.depth, float(k.max()))
@@ -168,10 +168,9 @@ def solve(point: Point, band: tuple[float, float], accuracy: float, operators: O
         Where those are kept that several points share.
     """
     scene, _, aperture, focus = point[:4]
-    orders = first_orders(scene, aperture, focus, band[1], accuracy)
-    for neighbour in point.neighbours:
-        orders = orders.with_those(first_orders(neighbour, aperture, focus, band[1], accuracy))
-    number = first_nodes(scene, aperture, focus, band, accuracy)
+    cylinders = scene, *point.neighbours
+    orders = first_orders(cylinders, aperture, focus, band[1], accuracy)
+    number = first_nodes(cylinders, aperture, focus, band, accuracy)
     most = most_nodes(scene, band, accuracy)
     if point.left_out(number) > 0:
         # a table turns at its rows, maybe between wavenumbers that are too far apart to see it;

@@ -11,7 +11,7 @@ from octsim.config.abilities import asked_of_scheme
 from octsim.config.derive import by_accuracy
 from octsim.config.maxwell import beyond_maxwell, by_maxwell
 from octsim.config.models import Config
-from octsim.config.scheme import options_of, scheme_of
+from octsim.config.scheme import cost_by, options_of, scheme_of
 from octsim.schemes.light import AccuracyStatus
 from octsim.schemes.table import FULL_WAVE, LIGHT_PATHS
 
@@ -90,7 +90,8 @@ def require_budget(
         If it takes longer than ``budget.cpu_hours``.
     """
     scheme, options, most = scheme_of(config), options_of(config), config.budget.cpu_hours
-    seconds = spectra * sum(scheme.cost(options, d).seconds for d in diameters.tolist())
+    each = (cost_by(scheme, options, config, d).seconds for d in diameters.tolist())
+    seconds = spectra * sum(each)
     hours = seconds / 3600
     if hours > most:
         raise ConfigError(

@@ -14,7 +14,15 @@ from octsim.optics.materials import Constant
 from octsim.optics.pupil import GaussianPupil
 from octsim.optics.scene import Cylinder, Plane, Region, Scene
 from octsim.schemes.fullwave.cylinder_on_plane import CylinderOnPlane, Layer, cylinders_of
-from octsim.schemes.fullwave.neighbours import Step, straight, through_planes, to_another
+from octsim.schemes.fullwave.neighbours import (
+    Between,
+    Step,
+    between,
+    matrix_of,
+    straight,
+    through_planes,
+    to_another,
+)
 from octsim.schemes.fullwave.operators import Operators
 from octsim.schemes.fullwave.orders import Orders
 from octsim.schemes.fullwave.several import both_signs, in_blocks
@@ -48,9 +56,10 @@ def test_cylinders_without_planes_are_those_of_treams(along: float, light: str) 
     t = in_blocks([both_signs(scattering_of(one, at, K, waves).whole)[0] for one in each])[0]
     r = np.zeros((2, 2, size, 2, 2, size), complex)
     for to, of in ((0, 1), (1, 0)):
-        sent = straight(Step(each[of], each[to]), at, 8.0, waves, waves)[0]
-        for part in (0, 1):
-            r[to, part, :, of, part] = sent
+        sent = straight(Step(each[of], each[to]), at, 8.0, 2 * waves)
+        none = np.zeros((1, 2, 2, 4 * waves + 1), complex)
+        every = Between(none, none + np.eye(2)[..., np.newaxis] * sent)
+        r[to, :, :, of] = matrix_of(every, waves, waves).reshape(2, size, 2, size)
     regular = np.zeros((2, 2, size), complex)
     regular[(0, 0, waves) if light == "first" else (1, 1, waves + 1)] = 1
     whole = np.eye(4 * size) - t @ r.reshape(4 * size, 4 * size)
@@ -67,7 +76,8 @@ def test_a_mirror_sends_what_an_image_would(across: float) -> None:
     step = Step(mirror, mirror._replace(offset=across, gap=0.2))
     along, waves = np.array([0.1, 0.8]), 6
     by = to_another(Step(step.of._replace(n_glass=1.52), step.to), along, 8.0, 2 * waves, 300)
-    found = through_planes(step, by, along, 8.0, waves, waves)
+    sent = matrix_of(through_planes(step, by, along, 8.0, 2 * waves), waves, waves)
+    found = sent.reshape(2, 2, 2 * waves + 1, 2, 2 * waves + 1)
     kappa = 8.0 * np.sqrt(1.33**2 - along**2)
     up, order = step.of.height + step.to.height, np.arange(-waves, waves + 1)
     # H_m e^{imφ} of φ → −φ is (−1)^m times that of −m; then Graf's theorem from below the plane
@@ -81,6 +91,20 @@ def test_a_mirror_sends_what_an_image_would(across: float) -> None:
             np.testing.assert_allclose(
                 found[row, part, :, part] / size, sign * sent / size, rtol=0, atol=1e-7
             )
+
+
+@pytest.mark.parametrize(
+    "layers", [{}, {"films": (Layer(1.6, 0.2),), "room": 1.0, "above": (Layer(1.5, inf),)}]
+)
+def test_what_one_gets_is_what_the_other_would_by_the_mirrored_step(layers: Any) -> None:
+    one, other = ONE._replace(**layers), OTHER._replace(**layers)
+    along = np.array([0.1, 0.8])
+    for of, to in ((one, other), (other, one)):
+        step = Step(of, to)
+        by = to_another(step, along, 8.0, 12, 200)
+        there, back = between(step, by, along, 8.0, 12), between(Step(to, of), by, along, 8.0, 12)
+        for a, b in zip(there.back(), back, strict=True):
+            np.testing.assert_allclose(a, b, rtol=0, atol=1e-9 * np.abs(b).max())
 
 
 @pytest.mark.parametrize(

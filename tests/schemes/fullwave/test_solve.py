@@ -118,7 +118,7 @@ def test_it_is_that_of_dense_rules(
     slide: Slide, aperture: float, focus: float, pupil: Pupil
 ) -> None:
     scene = CylinderOnPlane(*slide)
-    orders = first_orders(scene, aperture, focus, 8.0, 1e-10)
+    orders = first_orders((scene,), aperture, focus, 8.0, 1e-10)
     orders = Orders(orders.waves + 4, *(5 * number for number in orders[1:]))
     found = field_at(Point(scene, pupil, aperture, focus), K, orders, 1e-13, Operators()).values
     dense = dense_waves(slide, Beam(pupil, aperture, focus), K)

@@ -33,7 +33,7 @@ COVER = (Layer(1.52, inf),)
 
 
 def field_of(scene: CylinderOnPlane, orders: Orders | None = None) -> NDArray[Any]:
-    found = first_orders(scene, 1.2, 0.75, 8.0, 1e-10)
+    found = first_orders((scene,), 1.2, 0.75, 8.0, 1e-10)
     fine = Orders(found.waves + 4, *(3 * number for number in found[1:]))
     return field_at(Point(scene, PUPIL, 1.2, 0.75), K, orders or fine, 1e-14, Operators()).values
 
@@ -109,7 +109,7 @@ def test_planes_between_equal_media_are_none(layers: Any) -> None:
 def test_it_is_that_of_dense_rules(layered: Layered) -> None:
     beam = Beam(PUPIL, 0.9, 0.4)
     scene = scene_in_numbers(layered)
-    orders = first_orders(scene, 0.9, 0.4, 8.0, 1e-10)
+    orders = first_orders((scene,), 0.9, 0.4, 8.0, 1e-10)
     orders = Orders(orders.waves + 4, *(3 * number for number in orders[1:]))
     found = field_at(Point(scene, PUPIL, 0.9, 0.4), K, orders, 1e-13, Operators()).values
     expected = field_by(layered, beam, K, Rules(5, 40, 16, 110, 60))
