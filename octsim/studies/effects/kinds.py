@@ -10,6 +10,7 @@ from octsim.studies.effects.overlays import (
     chromatic,
     cover,
     dispersion,
+    neighbour,
     of_cylinder,
     polarised,
     rulings,
@@ -132,6 +133,9 @@ EFFECTS: tuple[Effect, ...] = (
            shell("membrane", 1.46, "5 nm"), alone=True),
     Effect("myelin 100 nm", "scene", "a shell of index 1.44",
            shell("myelin", 1.44, "100 nm"), alone=True),
+    Effect("neighbour 50 nm beside", "scene",
+           "a cylinder as thick as the sweep's middle, 50 nm beside the thickest",
+           neighbour(0.05), alone=True),
     Effect("cover glass at 5 um", "scene", "a second plane above the water",
            cover("5 um"), alone=True),
 )  # fmt: skip

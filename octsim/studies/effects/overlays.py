@@ -1,7 +1,7 @@
 """Overlays of a config that put an effect into it."""
 
+import math
 from collections.abc import Callable, Mapping
-from math import pi
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,8 @@ from octsim.config.derive import nested
 from octsim.config.dispersion import moved
 from octsim.config.dispersion_forms import CauchyIndex
 from octsim.config.models import Config
-from octsim.config.units import format_length
+from octsim.config.scene_checks import diameters_of
+from octsim.config.units import format_angle, format_length
 from octsim.optics.shipped_materials import SHIPPED
 
 Overlay = Mapping[str, Any]
@@ -65,7 +66,7 @@ def _solution(config: Config) -> CauchyIndex:
     """
     band, water = config.spectrum.wavelength, SHIPPED["water"].material
     wavelength = np.linspace(band.min, band.max, _FITTED)
-    index = [water.index(2 * pi / one).real for one in wavelength.tolist()]
+    index = [water.index(2 * math.pi / one).real for one in wavelength.tolist()]
     terms = np.polynomial.Polynomial.fit(wavelength**-2, index, _DEGREE).convert().coef
     return CauchyIndex(cauchy=tuple(terms.tolist()))
 
@@ -99,7 +100,7 @@ def zernike(number: int, rms: float, **objective: str) -> OverlayOf:
 
 def middle_wavelength(config: Config) -> str:
     """Return the wavelength of the middle of the band, to a nanometre."""
-    return f"{2e3 * pi / config.spectrum.middle:.0f} nm"
+    return f"{2e3 * math.pi / config.spectrum.middle:.0f} nm"
 
 
 def chromatic(config: Config) -> Overlay:
@@ -144,6 +145,32 @@ def shell(medium: str, index: float, thickness: str) -> OverlayOf:
         if laid is None or medium in config.scene.refractive_index.of:
             return None
         return {"scene": {**laid["scene"], "refractive_index": {medium: index}}}
+
+    return overlay
+
+
+def neighbour(beside: float) -> OverlayOf:
+    """Put a cylinder of the swept one's medium beside it, as thick as the sweep's middle.
+
+    It is that far away (µm) from the thickest of the config; from a thinner one farther.
+    """
+
+    def overlay(config: Config) -> Overlay | None:
+        scene, sweep = config.scene, config.sweep.diameters
+        own = next((one for one in scene.cylinders if one.diameter is None), None)
+        if own is None:
+            return None
+        thick, thickest = (sweep.start + sweep.stop) / 2, max(diameters_of(config).values())
+        # both stand on one plane: centres at half their diameters
+        apart = (thick + thickest) / 2 + beside
+        lifted = (thickest - thick) / 2
+        # both axes are parallel; x is where they cross the plane y = 0
+        x = own.x + math.sqrt(apart**2 - lifted**2) / math.cos(own.azimuth)
+        other = {
+            "medium": own.medium, "diameter": format_length(thick), "x": format_length(x),
+            "gap": format_length(scene.gap_of(own)), "azimuth": format_angle(own.azimuth),
+        }  # fmt: skip
+        return {"scene": {"cylinders": [*config.to_dict()["scene"]["cylinders"], other]}}
 
     return overlay
 

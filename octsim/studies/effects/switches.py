@@ -4,7 +4,8 @@ from collections.abc import Mapping
 
 from octsim.config.derive import merge, nested
 from octsim.config.models import Config
-from octsim.studies.effects.overlays import Overlay, of_cylinder
+from octsim.config.units import format_length
+from octsim.studies.effects.overlays import Overlay
 
 
 def is_on(config: Config, kind: str) -> bool:
@@ -23,6 +24,7 @@ def is_on(config: Config, kind: str) -> bool:
         "falloff": config.detector.falloff != "parabolic",
         "rulings": config.beam.waist is not None,
         "scene": len(scene.layers) > 2
+        or len(scene.cylinders) > 1
         or (
             swept is not None and bool(swept.x or swept.azimuth or swept.elevation or swept.shells)
         ),
@@ -49,7 +51,17 @@ def without(config: Config, kind: str) -> Overlay:
         "rulings": nested("beam.waist", None),
         "scene": merge(
             nested("scene.layers", [scene.objective_medium, scene.host_medium]),
-            of_cylinder(x="0 um", azimuth="0 deg", elevation="0 deg", shells=[])(config) or {},
+            _alone(config),
         ),
     }
     return off[kind]
+
+
+def _alone(config: Config) -> Overlay:
+    """Leave of a config's cylinders the one that is swept, level on the axis, without shells."""
+    found = [
+        {"medium": one.medium, **({} if one.gap is None else {"gap": format_length(one.gap)})}
+        for one in config.scene.cylinders
+        if one.diameter is None
+    ]
+    return nested("scene.cylinders", found) if found else {}

@@ -1,6 +1,5 @@
 """The scenes that are compared: the configured one, and one thing in it varied at a time."""
 
-import math
 from collections.abc import Iterator, Mapping
 from enum import IntEnum
 from typing import Any, NamedTuple
@@ -9,8 +8,7 @@ from octsim.base.errors import ConfigError
 from octsim.config.checks import impossible
 from octsim.config.derive import by_light_paths, by_waves, counting_rays, merge, validated
 from octsim.config.models import Config
-from octsim.config.units import format_angle, format_length
-from octsim.studies.effects.overlays import Overlay, cover, of_cylinder, shell
+from octsim.studies.effects.overlays import Overlay, cover, neighbour, of_cylinder, shell
 
 AS_CONFIGURED = "as configured"
 SCHEMES = ("vogel", "paths", "fullwave")
@@ -24,8 +22,8 @@ _NEIGHBOURS = (0, 20, 50, 100, 200, 500, 1000, 2000)  # nm
 _ELEVATIONS = (0.5, 1.0, 2.0, 5.0)  # deg
 _COVERS = (3, 5, 10, 20)  # µm
 _NEIGHBOUR, _COVER = "neighbour beside at", "cover glass at"
-_HIGHEST = 5
-"""Height of a cover glass, µm, above which Maxwell's equations take more than a second a point."""
+_HIGHEST = 10
+"""Height of a cover glass, µm, above which Maxwell's equations take many seconds a point."""
 
 
 class CaseStatus(IntEnum):
@@ -91,7 +89,7 @@ def _of_the_sweep(config: Config) -> Config:
 
 
 def _case(config: Config, quantity: str, value: float, unit: str, overlay: Overlay) -> Case:
-    long = quantity == _NEIGHBOUR or (quantity == _COVER and value > _HIGHEST)
+    long = quantity == _COVER and value > _HIGHEST
     by = [_possible(by(config), overlay) for by in _BY.values()]
     if long:
         by[SCHEMES.index("fullwave")] = None
@@ -119,7 +117,7 @@ def _varied(config: Config) -> Iterator[tuple[str, float, str, Overlay]]:
         laid = shell("sheath", index, f"{_OF_SHELL} nm")(config)
         yield from _laid(f"shell of {_OF_SHELL} nm, n", index, "", laid)
     for beside in _NEIGHBOURS:
-        yield from _laid(_NEIGHBOUR, beside, "nm", _neighbour(config, 1e-3 * beside))
+        yield from _laid(_NEIGHBOUR, beside, "nm", neighbour(1e-3 * beside)(config))
     for degrees in _ELEVATIONS:
         laid = of_cylinder(elevation=f"{degrees} deg")(config)
         yield from _laid("elevation", degrees, "°", laid)
@@ -132,23 +130,3 @@ def _laid(
 ) -> Iterator[tuple[str, float, str, Overlay]]:
     if overlay is not None:
         yield quantity, value, unit, overlay
-
-
-def _neighbour(config: Config, beside: float) -> Overlay:
-    """Put a cylinder of the swept one's medium beside it, as thick as the sweep's middle.
-
-    It is that far away from the thickest; from a thinner one farther.
-    """
-    scene, sweep = config.scene, config.sweep.diameters
-    own = next(one for one in scene.cylinders if one.diameter is None)
-    thick = (sweep.start + sweep.stop) / 2
-    # both stand on one plane: centres at half their diameters
-    apart = (thick + sweep.stop) / 2 + beside
-    lifted = (sweep.stop - thick) / 2
-    # both axes are parallel; x is where they cross the plane y = 0
-    x = own.x + (apart**2 - lifted**2) ** 0.5 / math.cos(own.azimuth)
-    other = {
-        "medium": own.medium, "diameter": format_length(thick), "x": format_length(x),
-        "gap": format_length(scene.gap_of(own)), "azimuth": format_angle(own.azimuth),
-    }  # fmt: skip
-    return {"scene": {"cylinders": [*config.to_dict()["scene"]["cylinders"], other]}}

@@ -21,6 +21,7 @@ EFFECTS = (
     "falloff Gaussian", "Zernike spherical (11) 10 nm rms",
     "Zernike spherical (11) 10 nm rms, phase only", "chromatic focal shift 100 nm",
     "rulings of one wavelength", "membrane 5 nm", "myelin 100 nm", "cover glass at 5 um",
+    "neighbour 50 nm beside",
     "neuron 50 nm off the axis", "azimuth 10°", "elevation 2°",
 )  # fmt: skip
 """One of each kind, of those that `octsim.studies.effects.kinds.EFFECTS` has."""
