@@ -122,8 +122,8 @@ As configured the slope at a held focus is {own} (mrad/nm, mean over the diamete
 Changes of the slope from the configured scene's by the same scheme, in mrad/nm.
 
 {held}
-*Not by it*: scheme `fullwave` has no elevation. *Too long*: it takes seconds to a minute a point
-for a neighbour or a high cover; `tracing: {{preset: exact}}` does such a scene by itself. A
+*Not by it*: scheme `fullwave` has no elevation. *Too long*: a cover as high takes half a
+minute a point; `tracing: {{preset: exact}}` does such a scene by itself. A
 change that is below the scatter over the diameters is none that a lab can take off: it is another
 at each diameter.
 
