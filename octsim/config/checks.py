@@ -12,6 +12,7 @@ from octsim.config.fields import DECIMALS, Range
 from octsim.config.likely import light_remarks
 from octsim.config.models import Config, FocusLine
 from octsim.config.scene_checks import diameters_of, impossible_scene, least_index, scene_remarks
+from octsim.config.source import unlit
 from octsim.config.tree import impossible_tree
 from octsim.config.units import format_length
 from octsim.optics.two_beams import aliasing_step
@@ -68,6 +69,8 @@ def impossible(config: Config) -> Iterator[str]:
             f"spectrum.wavelength.min: {format_length(band.min)} given; it must be below "
             f"spectrum.wavelength.max = {format_length(band.max)}"
         )
+    else:
+        yield from unlit(config.spectrum.source, config.spectrum.wavelength)
     for place, tried in enumerate(config.design.bands):
         if not tried.min < tried.max:
             yield (

@@ -132,6 +132,13 @@ def changed(config: Config, *overlays: Mapping[str, Any]) -> Config:
     return other
 
 
+def with_flat_source(config: Config) -> Config:
+    """Return a config whose source is flat, as what is compared with a formula for one needs."""
+    return config.model_copy(
+        update={"spectrum": config.spectrum.model_copy(update={"source": "flat"})}
+    )
+
+
 def by_rays(config: Config, rays: int) -> Config:
     """Return a config that counts some number of rays."""
     asked = {"preset": None, "scheme": COUNTED_RAYS.name, "rays": rays}

@@ -29,7 +29,8 @@ FORMS = (
 )
 
 
-def _unit(unit: str) -> str:
+def unit_of_length(unit: str) -> str:
+    """Return a unit, if it is one of length that is known."""
     found = find_unit(unit)
     if found is None or found.dimension != "length":
         raise ValueError(f"{unit} is not a unit of length that is known; give one, as nm or um")
@@ -41,7 +42,7 @@ class TableFile(Section):
 
     table: Annotated[str, Field(min_length=1)]
     """Path of a CSV file, from the current folder: columns wavelength, n and maybe kappa."""
-    unit: Annotated[str, AfterValidator(_unit)] | None = None
+    unit: Annotated[str, AfterValidator(unit_of_length)] | None = None
     """Of its wavelengths, where their heading does not say it."""
 
 

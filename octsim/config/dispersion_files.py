@@ -3,15 +3,11 @@
 import re
 from typing import NamedTuple
 
+from octsim.config.source_files import WAVELENGTH
 from octsim.config.table_text import Block, is_number, read_blocks
 from octsim.config.units import parse_length
 
 FORM = "write a first row as 'wavelength (nm),n' or 'wavelength (nm),n,kappa'"
-_WAVELENGTH = re.compile(
-    r"(?:wavelengths?|lambda|λ|wl|wvl)[\s_,/]*(?:in\s+)?"
-    r"(?:\(\s*(.+?)\s*\)|\[\s*(.+?)\s*\]|([^\W\d_]+))?",
-    re.IGNORECASE,
-)
 _N = (
     "n", "refractiveindex", "index", "indexofrefraction", "nreal", "realn", "ren", "nre", "ri",
     "refractiveindexn", "nrefractiveindex",
@@ -101,7 +97,7 @@ def read_indices(file: str, unit: str | None) -> Rows:
 
 def _column(cell: str) -> str | None:
     """Return what the column of a heading holds; None of another."""
-    if _WAVELENGTH.fullmatch(cell.strip()):
+    if WAVELENGTH.fullmatch(cell.strip()):
         return "wavelength"
     return _COLUMNS.get(re.sub(r"[\W_]+", "", cell.lower()))
 
@@ -137,7 +133,7 @@ def _heading(file: str, block: Block, *, later: bool) -> _Heading:
             raise ValueError(f"{file} has two columns of {name}; leave one of them out")
         if name:
             columns[name] = place
-        if match := _WAVELENGTH.fullmatch(cell.strip()):
+        if match := WAVELENGTH.fullmatch(cell.strip()):
             unit = match[1] or match[2] or match[3]
     for name in ("wavelength", "kappa" if later else "n"):
         if name not in columns:

@@ -81,18 +81,22 @@ def _increasing(values: tuple[float, ...]) -> tuple[float, ...]:
     return values
 
 
+Ascending = Annotated[
+    tuple[
+        Annotated[Wavelength, BeforeValidator(_wavelength, json_schema_input_type=str | float)],
+        ...,
+    ],
+    BeforeValidator(listed),
+    Field(min_length=2),
+    AfterValidator(_increasing),
+]
+"""Wavelengths in vacuum, of a table."""
+
+
 class TableColumns(Section):
     """Refractive indices at some wavelengths in vacuum."""
 
-    wavelength: Annotated[
-        tuple[
-            Annotated[Wavelength, BeforeValidator(_wavelength, json_schema_input_type=str | float)],
-            ...,
-        ],
-        BeforeValidator(listed),
-        Field(min_length=2),
-        AfterValidator(_increasing),
-    ]
+    wavelength: Ascending
     n: Annotated[tuple[Index, ...], BeforeValidator(listed)]
     kappa: (
         Annotated[tuple[Annotated[Number, Field(ge=0, le=10)], ...], BeforeValidator(listed)] | None

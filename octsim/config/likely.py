@@ -6,6 +6,7 @@ from itertools import pairwise
 
 from octsim.config.effects import zernike_name
 from octsim.config.models import Config
+from octsim.config.source import dim
 from octsim.schemes.table import SCHEMES
 
 _PISTON = 1
@@ -25,6 +26,7 @@ def light_remarks(config: Config) -> Iterator[str]:
     yield from _attenuation(config)
     yield from _beam_and_fibre(config)
     yield from _without_contrast(config)
+    yield from dim(config.spectrum.source, config.spectrum.wavelength)
 
 
 def _band(config: Config) -> tuple[float, float]:

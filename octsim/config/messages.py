@@ -99,6 +99,7 @@ _OF_TWO_KINDS = (
     ["processing", "depth"],
     ["expansion", "drift"],
     ["objective", "pupil"],
+    ["spectrum", "source"],
 )
 _LISTS = (
     "processing.window", "scene.layers", "scene.cylinders", "scene.cylinders.shells",

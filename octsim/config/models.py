@@ -33,6 +33,7 @@ from octsim.config.resources import Cache as Cache
 from octsim.config.responses import Responses
 from octsim.config.scene import RefractiveIndex as RefractiveIndex
 from octsim.config.scene import SceneConfig as SceneConfig
+from octsim.config.source import SourceConfig, source_of
 from octsim.optics.band import wavenumbers
 from octsim.optics.materials import Material, group_index
 from octsim.schemes.table import COUNTED_RAYS, PRESETS, SCHEMES
@@ -78,16 +79,29 @@ class Wavelengths(Section):
 
 
 class Spectrum(Section):
-    """The flat spectrum of the source and the samples taken of it."""
+    """The spectrum of the source and the samples taken of it."""
 
     wavelength: Wavelengths = Wavelengths()
     samples: Annotated[int, Field(ge=2, le=1_000_000)] = _key(
         1000, "wavenumbers, evenly spaced, both ends included"
     )
+    source: SourceConfig = _key(
+        "flat",
+        "its power at each wavelength: flat, {gaussian: {centre: 840 nm, fwhm: 50 nm}}, or a CSV "
+        "file of wavelength and power",
+    )
 
     def wavenumbers(self) -> "NDArray[np.float64]":
         """Return the wavenumbers 2π/λ, evenly spaced and increasing, shape (K,), 1/µm."""
         return wavenumbers(self.wavelength.min, self.wavelength.max, self.samples)
+
+    def power(self) -> "NDArray[np.float64] | None":
+        """Return the source's power at the wavenumbers, over its largest, (K,); None of a flat one.
+
+        It is that of each sample, as a spectrometer counts: no factor dλ/dk is applied.
+        """
+        source = source_of(self.source)
+        return None if source is None else source.power(self.wavenumbers())
 
     @property
     def middle(self) -> float:

@@ -12,6 +12,7 @@ from octsim.base.provenance import source_digest
 from octsim.base.threads import each
 from octsim.config.models import Config
 from octsim.config.scheme import options_of, rate_name, scheme_of, traced_keys
+from octsim.config.source import source_of
 from octsim.instrument.build import optics_of, scene_of
 from octsim.instrument.point_keys import instrument_key
 from octsim.instrument.points import Points
@@ -59,6 +60,8 @@ class Instrument:
         self.config, self.scheme = config, scheme_of(config)
         self.wavenumber = config.spectrum.wavenumbers()
         """Evenly spaced wavenumbers, (K,), 1/µm."""
+        self.power = config.spectrum.power()
+        """Of the source at these, over its largest, (K,); None of a flat one."""
         self._points = points
         self._options = options_of(config)
 
@@ -99,7 +102,9 @@ class Instrument:
     def over(self, light: Found, wavenumber: NDArray[np.float64]) -> PointSpectrum:
         """Sum light of this instrument over wavenumbers (K,), 1/µm, within its band."""
         field = self.scheme.field(light, wavenumber, self._optics, self._options)
-        return PointSpectrum(*spectrum_of(field), light.status)
+        found = PointSpectrum(*spectrum_of(field), light.status)
+        source = source_of(self.config.spectrum.source)
+        return found if source is None else _lit(found, source.power(wavenumber))
 
     def spectrum(self, diameter: float, focus: float) -> PointSpectrum:
         """Return the spectrum of a diameter at a focus, both µm."""
@@ -141,3 +146,12 @@ class Instrument:
             self.scheme.module, "octsim.instrument.build", "octsim.instrument.point_entries"
         )
         return instrument_key(traced_keys(self.config), code)
+
+
+def _lit(found: PointSpectrum, power: NDArray[np.float64]) -> PointSpectrum:
+    """Return the spectrum of a point by a source of some power (K,)."""
+    intensity = found.intensity * power
+    largest = float(intensity.max())
+    # an error may be anywhere in the band
+    scale = float(found.intensity.max() * power.max()) / largest if largest > 0 else 1.0
+    return PointSpectrum(intensity, found.error * scale, found.status)

@@ -54,7 +54,8 @@ def estimator_of(config: Config, foci: Array) -> EstimatorOf:
     if processing.estimator == "fft" or np.isnan(foci).any():
         return lambda _, diameter: Phases(*np.full((2, diameter.size), np.nan))
     if processing.estimator != "maximum_likelihood":
-        return lambda spectra, diameter: phases(spectra, k, index * diameter, processing)
+        power = config.spectrum.power()
+        return lambda spectra, diameter: phases(spectra, k, index * diameter, processing, power)
     # here, as a run of any other estimator needs no tracing any more
     from octsim.phase.modelled_spectra import model_of_sweep
 
@@ -81,10 +82,13 @@ def ideal_phases(config: Config, spectra: Array, diameter: Array, wavenumber: Ar
         return slope * diameter
     depth, found = config.swept_group_index * diameter, np.full(diameter.size, np.nan)
     resolved = unusable(spectra, wavenumber, depth) != FringeStatus.NOT_RESOLVED
+    power = config.spectrum.power()
     if resolved.any():
+        opposite = 1 - spectra[resolved]
         found[resolved] = phases(
-            1 - spectra[resolved], wavenumber, depth[resolved], processing
-        ).phase
+            opposite if power is None else opposite * power,
+            wavenumber, depth[resolved], processing, power,
+        ).phase  # fmt: skip
     return found
 
 

@@ -6,12 +6,13 @@ from octsim.config.processing import Processing
 from octsim.phase.estimators.by_name import phases
 from octsim.phase.estimators.estimate import Array
 from octsim.phase.slopes import phase_slopes, slope_of
-from octsim.phase.transform import fourier_components
+from octsim.phase.transform import fourier_components, without_source
 
 
 def local_slope(
-    intensity: Array, wavenumber: Array, diameter: Array, index: float, processing: Processing
-) -> float:
+    intensity: Array, wavenumber: Array, diameter: Array, index: float, processing: Processing,
+    source: Array | None = None,
+) -> float:  # fmt: skip
     """Return the phase slope at the middle one of three diameters, as a sweep over them has it.
 
     Parameters
@@ -26,6 +27,8 @@ def local_slope(
         Of the neuron, for its nominal optical depth.
     processing : Processing
         Which estimator, with which options; all but maximum likelihood.
+    source : ndarray, shape (K,), optional
+        The source's power; None of a flat one.
 
     Returns
     -------
@@ -33,9 +36,9 @@ def local_slope(
         mrad/nm.
     """
     if processing.estimator == "fft":
-        components = fourier_components(intensity, processing)
+        components = fourier_components(without_source(intensity, source), processing)
         slopes = phase_slopes(diameter, np.abs(components), np.angle(components)).strongest
     else:
-        found = phases(intensity, wavenumber, index * diameter, processing)
+        found = phases(intensity, wavenumber, index * diameter, processing, source)
         slopes = slope_of(diameter, found.phase)
     return float(slopes[1])

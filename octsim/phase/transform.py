@@ -68,6 +68,21 @@ def centred(intensity: Array, centre: str, window: Named = "boxcar", degree: int
     return without
 
 
+def without_source(intensity: Array, source: Array | None) -> Array:
+    r"""Subtract from spectra (D, K) the source's own, as bright as each by least squares.
+
+    .. math:: I - S \frac{\sum I S}{\sum S^2}
+
+    What is left oscillates, with the source for a window. Of a flat source, None, nothing is
+    subtracted: `centred` does so.
+    """
+    if source is None:
+        return intensity
+    bright = (intensity * source).sum(axis=-1, keepdims=True) / (source * source).sum()
+    without: Array = intensity - bright * source
+    return without
+
+
 def windowed(intensity: Array, window: Named) -> Array:
     """Multiply spectra (..., K) by a symmetric window of scipy.signal.windows."""
     product: Array = intensity * window_samples(window, intensity.shape[-1])

@@ -87,6 +87,7 @@ def exact_slopes(config: Config, foci: Array) -> ExactSlopes:
         slope[place] = local_slope(
             np.stack([found.intensity for found in spectra]), instrument.wavenumber,
             diameters[near], exact.swept_group_index, config.processing,
+            instrument.power,
         )  # fmt: skip
     return ExactSlopes(slope, status)
 

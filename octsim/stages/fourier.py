@@ -17,7 +17,12 @@ from octsim.phase.by_config import estimator_of
 from octsim.phase.estimators.visible import Fringe, fringe_at, is_elsewhere
 from octsim.phase.fringe_status import WITH_PHASE, FringeStatus, doubts_of
 from octsim.phase.hiding_error import hiding_error
-from octsim.phase.transform import fourier_components, optical_depths, rounding_level
+from octsim.phase.transform import (
+    fourier_components,
+    optical_depths,
+    rounding_level,
+    without_source,
+)
 from octsim.stages.workload import points_per_block
 
 
@@ -72,7 +77,8 @@ def _transformed(layout: Layout, stored: Stored) -> Iterator[Part]:
     for at, span in layout.blocks(block_points):
         part = stored.part(at, span)
         intensity = part["intensity"].values
-        components = fourier_components(intensity, at.config.processing)
+        bare = without_source(intensity, at.config.spectrum.power())
+        components = fourier_components(bare, at.config.processing)
         magnitude = np.abs(components)
         fringe = _fringe(at.config, part, magnitude)
         visible = np.isin(fringe.status, WITH_PHASE)
@@ -102,7 +108,8 @@ def _fringe(config: Config, part: xr.Dataset, magnitude: NDArray[np.float64]) ->
     k = config.spectrum.wavenumbers()
     depth = config.swept_group_index * part["diameter"].values
     error = hiding_error(part["intensity_error"].values, part["accuracy_status"].values)
-    found = fringe_at(part["intensity"].values, k, depth, error)
+    power = config.spectrum.power()
+    found = fringe_at(part["intensity"].values, k, depth, error, power)
     if not by_components(config):
         return found
     strongest = 1 + magnitude[:, 1:].argmax(axis=1)

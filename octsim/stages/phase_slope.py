@@ -114,7 +114,9 @@ def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[
         fringe["fringe_status"] = "diameter", status.values[inner], status.attrs
     found = phase_slopes(diameter, part["magnitude"].values, phase)
     spectra = ideal_spectra(config.swept_material, diameter, k)
-    ideal = fourier_components(spectra, config.processing)
+    power = config.spectrum.power()
+    shaped = spectra if power is None else spectra * power
+    ideal = fourier_components(shaped, config.processing)
     ideals = phase_slopes(diameter, np.abs(ideal), np.angle(ideal))
     slope, ideal_slope = found.strongest, ideals.strongest
     if not by_components(config):

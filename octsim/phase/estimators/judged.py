@@ -21,6 +21,7 @@ from octsim.phase.estimators.visible import (
     unusable,
 )
 from octsim.phase.fringe_status import WITH_PHASE, FringeStatus
+from octsim.phase.transform import without_source
 
 POOR = 6e-3
 """Shape of the residual, over the fringe, from which the fit is poor; root mean squares. octsim's
@@ -38,6 +39,7 @@ def estimate(
     nominal: Array,
     processing: Processing,
     cut: NDArray[np.bool_] | None = None,
+    source: Array | None = None,
 ) -> Estimate:
     """Estimate the phase of spectra as the processing says, and say how well it is known.
 
@@ -58,16 +60,18 @@ def estimate(
         Which estimator, at which depth, with which options.
     cut : ndarray, shape (D,), optional
         Which spectra have samples that are cut, where they were interpolated since.
+    source : ndarray, shape (K,), optional
+        The source's power; None of a flat one.
     """
     intensity = np.ascontiguousarray(intensity)
     cut = are_cut(intensity) if cut is None else cut
-    start = _expected(intensity, wavenumber, nominal, processing)
+    start = _expected(intensity, wavenumber, nominal, processing, source)
     given = processing.depth if isinstance(processing.depth, float) else np.nan
     known = np.where(np.isfinite(nominal), nominal, given)
     status, residual = unusable(intensity, wavenumber, start), intensity.std(axis=1)
     found = np.full((6, len(intensity)), np.nan)
     rows = np.flatnonzero(status == FringeStatus.VISIBLE)
-    fits = _fitted(intensity[rows], wavenumber, nominal[rows], start[rows], processing)
+    fits = _fitted(intensity[rows], wavenumber, nominal[rows], start[rows], processing, source)
     for chunk, own, fit in fits:
         part = rows[chunk]
         spectra = intensity[part]
@@ -77,9 +81,12 @@ def estimate(
             errors = own.unit_errors()[1:]
             errors = errors[0] * noise, errors[1] * noise
         else:
-            errors = _drawn(wavenumber, nominal[part], processing, fit, noise)
+            errors = _drawn(wavenumber, nominal[part], processing, fit, noise, source)
         far = _far(wavenumber, known[part], fit, noise)
-        seen_as, at_depth = seen(spectra, fit, left), unusable(spectra, wavenumber, fit.depth)
+        seen_as, at_depth = (
+            seen(spectra, fit, left, source),
+            unusable(spectra, wavenumber, fit.depth),
+        )
         # the depth where it is may be too small, where the expected one was not
         short = np.isin(seen_as, WITH_PHASE) & (at_depth != FringeStatus.VISIBLE)
         seen_as = np.where(short, at_depth, seen_as)
@@ -106,47 +113,53 @@ def reference(processing: Processing) -> Processing:
     return processing.model_copy(update={"estimator": "sinusoid", "sinusoid": sinusoid})
 
 
-def _expected(intensity: Array, wavenumber: Array, nominal: Array, processing: Processing) -> Array:
+def _expected(
+    intensity: Array, wavenumber: Array, nominal: Array, processing: Processing,
+    source: Array | None,
+) -> Array:  # fmt: skip
     """Return where fringes are expected, (D,), µm: of fft, which is told nothing, at the peak."""
     if processing.estimator != "fft":
-        return expected_depths(intensity, wavenumber, nominal, processing)
-    return np.where(np.isfinite(nominal), nominal, peak_depths(intensity, wavenumber, processing))
+        return expected_depths(intensity, wavenumber, nominal, processing, source)
+    peaks = peak_depths(without_source(intensity, source), wavenumber, processing)
+    return np.where(np.isfinite(nominal), nominal, peaks)
 
 
 def _fitted(
-    intensity: Array, wavenumber: Array, nominal: Array, start: Array, processing: Processing
-) -> Iterator[tuple[slice, Fit | Phases, Fit]]:
+    intensity: Array, wavenumber: Array, nominal: Array, start: Array, processing: Processing,
+    source: Array | None,
+) -> Iterator[tuple[slice, Fit | Phases, Fit]]:  # fmt: skip
     """Return which spectra, their phases and the reference's fit, some spectra at a time."""
     asked = reference(processing)
     if processing.estimator == "sinusoid":
-        for part, own in fit_sinusoid(intensity, wavenumber, start, processing):
+        for part, own in fit_sinusoid(intensity, wavenumber, start, processing, source):
             if asked == processing:
                 yield part, own, own
             else:
-                _, fit = next(fit_sinusoid(intensity[part], wavenumber, own.depth, asked))
+                _, fit = next(fit_sinusoid(intensity[part], wavenumber, own.depth, asked, source))
                 yield part, own, fit
     elif start.size:
-        found = phases(intensity, wavenumber, nominal, processing)
+        found = phases(intensity, wavenumber, nominal, processing, source)
         near = start if processing.estimator == "fft" else found.depth
         near = np.where(near > 0, near, start)
-        for part, fit in fit_sinusoid(intensity, wavenumber, near, asked):
+        for part, fit in fit_sinusoid(intensity, wavenumber, near, asked, source):
             yield part, Phases(found.phase[part], found.depth[part]), fit
 
 
 def _drawn(
-    wavenumber: Array, nominal: Array, processing: Processing, fit: Fit, noise: Array
-) -> tuple[Array, Array]:
+    wavenumber: Array, nominal: Array, processing: Processing, fit: Fit, noise: Array,
+    source: Array | None,
+) -> tuple[Array, Array]:  # fmt: skip
     """Return standard errors of phase (rad) and depth (µm) by draws of noise, each (D,).
 
     Each spectrum has the same draws, so that its errors are its own.
     """
     generator = np.random.default_rng(_SEED)
     deviation = noise[:, np.newaxis] / fit.root
-    without = phases(fit.fitted, wavenumber, nominal, processing)
+    without = phases(fit.fitted, wavenumber, nominal, processing, source)
     total, square = np.zeros((2, 2, fit.depth.size))
     for _ in range(DRAWS):
         noisy = fit.fitted + deviation * generator.standard_normal(wavenumber.size)
-        found = phases(noisy, wavenumber, nominal, processing)
+        found = phases(noisy, wavenumber, nominal, processing, source)
         moved = np.stack([wrapped(found.phase - without.phase), found.depth - without.depth])
         total += moved
         square += moved**2

@@ -5,12 +5,13 @@ import numpy as np
 from octsim.config.processing import Processing
 from octsim.phase.estimators.by_name import phases
 from octsim.phase.estimators.estimate import Array
-from octsim.phase.transform import fourier_components
+from octsim.phase.transform import fourier_components, without_source
 
 
 def series_phases(
-    intensity: Array, wavenumber: Array, depth: float, processing: Processing
-) -> Array:
+    intensity: Array, wavenumber: Array, depth: float, processing: Processing,
+    source: Array | None = None,
+) -> Array:  # fmt: skip
     """Estimate the phases of a series, which is of one optical depth as far as is known.
 
     Of fft it is that of one component, the strongest of all spectra together, as phases of two
@@ -26,6 +27,8 @@ def series_phases(
         Nominal optical depth n_neuron · diameter, µm.
     processing : Processing
         Which estimator, with which options.
+    source : ndarray, shape (K,), optional
+        The source's power; None of a flat one.
 
     Returns
     -------
@@ -33,7 +36,8 @@ def series_phases(
         Phases, rad, wrapped or not: of fft at the first wavenumber, of others at the middle one.
     """
     if processing.estimator == "fft":
-        components = fourier_components(intensity, processing)
+        components = fourier_components(without_source(intensity, source), processing)
         strongest = 1 + int(np.abs(components[:, 1:]).sum(axis=0).argmax())
         return np.angle(components[:, strongest])
-    return phases(intensity, wavenumber, np.full(len(intensity), depth), processing).phase
+    depths = np.full(len(intensity), depth)
+    return phases(intensity, wavenumber, depths, processing, source).phase

@@ -88,22 +88,27 @@ class Fit(NamedTuple):
         return np.asarray(np.sqrt((solved**2).sum(axis=1)))
 
 
-def sinusoid(intensity: Array, wavenumber: Array, depth: Array, processing: Processing) -> Phases:
+def sinusoid(
+    intensity: Array, wavenumber: Array, depth: Array, processing: Processing,
+    source: Array | None = None,
+) -> Phases:  # fmt: skip
     """Fit a sinusoid on polynomials, and give its phase and depth; see `fit_sinusoid`."""
-    fits = fit_sinusoid(intensity, wavenumber, depth, processing)
+    fits = fit_sinusoid(intensity, wavenumber, depth, processing, source)
     phases, depths = zip(*((fit.phase, fit.depth) for _, fit in fits), strict=True)
     return Phases(np.concatenate(phases), np.concatenate(depths))
 
 
 def fit_sinusoid(
-    intensity: Array, wavenumber: Array, depth: Array, processing: Processing
-) -> Iterator[tuple[slice, Fit]]:
+    intensity: Array, wavenumber: Array, depth: Array, processing: Processing,
+    source: Array | None = None,
+) -> Iterator[tuple[slice, Fit]]:  # fmt: skip
     r"""Fit a sinusoid on polynomials by weighted least squares.
 
-    .. math:: I(k) = \sum_{j \le p} o_j x^j
-        + \mathrm{Re}\Big[\sum_{j \le q} c_j x^j e^{2iz(k - k_{mid})}\Big],
+    .. math:: I(k) = S(k) \Big( \sum_{j \le p} o_j x^j
+        + \mathrm{Re}\Big[\sum_{j \le q} c_j x^j e^{2iz(k - k_{mid})}\Big] \Big),
         \quad x \in [-1, 1], \quad \phi = \arg c_0
 
+    The source S is known, or flat: it multiplies the model, and no sample is divided by it.
     All but z is linear and eliminated; a fitted z moves by Kaufman's variable projection (Golub and
     Pereyra 2003, doi:10.1088/0266-5611/19/2/201). With the weights of shot noise,
     1/(intensity + read noise²) of the last fit, it is the maximum likelihood of counts.
@@ -118,6 +123,8 @@ def fit_sinusoid(
         Optical depths z, held or to begin with, µm.
     processing : Processing
         Its ``sinusoid`` section, and the read noise.
+    source : ndarray, shape (K,), optional
+        The source's power; None of a flat one.
 
     Yields
     ------
@@ -132,22 +139,27 @@ def fit_sinusoid(
         If the envelope is common, and the spectra are not of one depth.
     """
     options, variance = processing.sinusoid, processing.read_noise**2
-    envelope = _polynomials(wavenumber, options)
+    envelope = _polynomials(wavenumber, options, source)
     if options.envelope == "common":
-        envelope = _common(intensity, wavenumber, depth, processing)
+        envelope = _common(intensity, wavenumber, depth, processing, envelope)
     for begin in range(0, depth.size, CHUNK):
         part = slice(begin, begin + CHUNK)
         yield part, _fit(intensity[part], wavenumber, depth[part], options, variance, envelope)
 
 
-def _polynomials(wavenumber: Array, options: Options) -> Envelope:
-    """Return the powers of the place in the band, from −1 to 1."""
+def _polynomials(wavenumber: Array, options: Options, source: Array | None) -> Envelope:
+    """Return the powers of the place in the band, from −1 to 1, times the source."""
     x = place(wavenumber)[:, np.newaxis]
     amplitude = x ** np.arange(options.amplitude_degree + 1)
-    return Envelope(x ** np.arange(options.offset_degree + 1), amplitude.astype(complex))
+    offset = x ** np.arange(options.offset_degree + 1)
+    if source is not None:
+        offset, amplitude = (one * source[:, np.newaxis] for one in (offset, amplitude))
+    return Envelope(offset, amplitude.astype(complex))
 
 
-def _common(intensity: Array, wavenumber: Array, depth: Array, processing: Processing) -> Envelope:
+def _common(
+    intensity: Array, wavenumber: Array, depth: Array, processing: Processing, powers: Envelope
+) -> Envelope:
     """Fit polynomials to the mean of a series, and keep their shape."""
     options, mean_depth = processing.sinusoid, depth.mean(keepdims=True)
     if np.abs(depth - mean_depth).max() > _ONE_SERIES * mean_depth[0]:
@@ -156,7 +168,7 @@ def _common(intensity: Array, wavenumber: Array, depth: Array, processing: Proce
             f"{depth.min():.4g} to {depth.max():.4g} um; that is for a series at one diameter, so "
             "give each"
         )
-    powers, mean = _polynomials(wavenumber, options), intensity.mean(axis=0, keepdims=True)
+    mean = intensity.mean(axis=0, keepdims=True)
     # the noise of a mean is less, but in the same proportion from sample to sample
     one = _fit(mean, wavenumber, mean_depth, options, processing.read_noise**2, powers)
     shape = powers.amplitude @ (one.amplitude[0] / one.amplitude[0, 0])

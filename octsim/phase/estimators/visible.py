@@ -104,15 +104,18 @@ def fringe_power(fit: Fit) -> Array:
     return power
 
 
-def seen(intensity: Array, fit: Fit, left: Leftover) -> NDArray[np.int8]:
+def seen(
+    intensity: Array, fit: Fit, left: Leftover, source: Array | None = None
+) -> NDArray[np.int8]:
     """Return whether the fringe of fits is there: the status (D,) of spectra (D, K).
 
     There is none if its amplitude is within noise or rounding, or if a polynomial of degree
-    `CURVE` is nearer to the spectrum. What the residual has beyond noise is of other depths.
+    `CURVE`, times the source, is nearer to the spectrum. What the residual has beyond noise is of
+    other depths.
     """
     amplitude, samples = np.abs(fit.amplitude[:, 0]), intensity.shape[1]
     error = fit.unit_errors()[0] * np.sqrt(left.noise)
-    curve = (centred(intensity, "polynomial", "boxcar", CURVE) ** 2).mean(axis=1)
+    curve = (_without_curve(intensity, source) ** 2).mean(axis=1)
     sinusoid = ((intensity - fit.fitted) ** 2).mean(axis=1)
     unweighted = left.noise * np.where(left.whole > 0, sinusoid / left.whole, 1)
     # the chance of noise to be described better is that of as few parameters as they differ in
@@ -127,6 +130,17 @@ def seen(intensity: Array, fit: Fit, left: Leftover) -> NDArray[np.int8]:
     found = np.select(list(conditions.values()), list(conditions), FringeStatus.VISIBLE)
     # a fit that went astray is none either
     return np.where(np.isfinite(amplitude), found, FringeStatus.NO_FRINGE).astype(np.int8)
+
+
+def _without_curve(intensity: Array, source: Array | None) -> Array:
+    """Return what a polynomial, times the source, leaves of spectra (D, K)."""
+    if source is None:
+        return centred(intensity, "polynomial", "boxcar", CURVE)
+    x = np.linspace(-1, 1, source.size)
+    curves = np.polynomial.legendre.legvander(x, CURVE) * source[:, np.newaxis]
+    orthogonal, _ = np.linalg.qr(curves)
+    left: Array = intensity - (intensity @ orthogonal) @ orthogonal.T
+    return left
 
 
 def is_elsewhere(
@@ -148,8 +162,9 @@ class Fringe(NamedTuple):
 
 
 def fringe_at(
-    intensity: Array, wavenumber: Array, depth: Array, error: Array | float = 0.0
-) -> Fringe:
+    intensity: Array, wavenumber: Array, depth: Array, error: Array | float = 0.0,
+    source: Array | None = None,
+) -> Fringe:  # fmt: skip
     """Look for the fringe of spectra (D, K) at nominal optical depths (D,), µm.
 
     Parameters
@@ -162,13 +177,15 @@ def fringe_at(
         Nominal optical depths n_neuron · diameter, µm.
     error : ndarray, shape (D,), or float
         Estimated error of the intensity, over its largest.
+    source : ndarray, shape (K,), optional
+        The source's power; None of a flat one.
     """
     intensity = np.ascontiguousarray(intensity)
     status, visibility = unusable(intensity, wavenumber, depth), np.full(len(intensity), np.nan)
     rows = np.flatnonzero(status == FringeStatus.VISIBLE)
-    for chunk, fit in fit_sinusoid(intensity[rows], wavenumber, depth[rows], _HELD):
+    for chunk, fit in fit_sinusoid(intensity[rows], wavenumber, depth[rows], _HELD, source):
         part = rows[chunk]
-        found = seen(intensity[part], fit, leftover(intensity[part], wavenumber, fit))
+        found = seen(intensity[part], fit, leftover(intensity[part], wavenumber, fit), source)
         amplitude = np.abs(fit.amplitude[:, 0])
         least = np.broadcast_to(error, status.shape)[part] * intensity[part].max(axis=1)
         hidden = (found != FringeStatus.NO_FRINGE) & (amplitude < least)
@@ -179,8 +196,9 @@ def fringe_at(
 
 
 def require_fringe(
-    what: str, intensity: Array, wavenumber: Array, depth: Array, error: Array | float = 0.0
-) -> None:
+    what: str, intensity: Array, wavenumber: Array, depth: Array, error: Array | float = 0.0,
+    source: Array | None = None,
+) -> None:  # fmt: skip
     """Refuse spectra for a purpose that needs a phase of each; see `fringe_at`.
 
     Raises
@@ -188,7 +206,7 @@ def require_fringe(
     OctsimError
         If one has none; with the first such depth, its status and the remedy.
     """
-    status = fringe_at(intensity, wavenumber, depth, error).status
+    status = fringe_at(intensity, wavenumber, depth, error, source).status
     without = np.flatnonzero(~np.isin(status, WITH_PHASE))
     if without.size:
         one = FringeStatus(int(status[without[0]]))

@@ -84,7 +84,7 @@ def action_potential(
     counted = shot_noise(spectra, settings.photons, np.random.default_rng(settings.seed))
     depth = float(instrument.nominal_depth(np.array(settings.diameter)))
     phase, of_fft = (
-        series_phases(counted, k, depth, processing)
+        series_phases(counted, k, depth, processing, instrument.power)
         for processing in (calibrating(config), by_fft(config))
     )
     change = change_from_rest(Series(time, phase), REST)

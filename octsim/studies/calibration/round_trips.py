@@ -61,7 +61,8 @@ def _recover(
     if generator is not None:
         spectra = shot_noise(spectra, config.action_potential.photons, generator)
     depth = config.swept_group_index * diameter
-    phase = series_phases(spectra, config.spectrum.wavenumbers(), depth, calibrating(config))
+    k, power = config.spectrum.wavenumbers(), config.spectrum.power()
+    phase = series_phases(spectra, k, depth, calibrating(config), power)
     series = Series(np.arange(REST + 1.0), phase)
     change = change_from_rest(series, REST)
     found = expansion(change.phase[-1:], diameter, calibration, change.error[-1:])

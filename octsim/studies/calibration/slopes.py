@@ -154,7 +154,7 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
 
     fixed = observed(own, diameter + offsets, held)
     middle = fixed.intensity[offsets.size // 2, np.newaxis]
-    require_fringe("calibration", middle, k, np.array([depth]), fixed.error)
+    require_fringe("calibration", middle, k, np.array([depth]), fixed.error, own.power)
     following = observed(own, diameter + offsets, focus + bench.law_slope * offsets)
     focused = observed(own, at_rest, focus + offsets)
     # nothing is off in the middle of each of the following: that pair is there already
@@ -168,11 +168,11 @@ def slopes_at(bench: Bench, diameter: float, focus: float) -> dict[str, Any]:
     accurate = [fixed, following, focused, *bent, *chain.from_iterable(varied)]
 
     def phase_slope(seen: Spectra, processing: Processing) -> Derivative:
-        phase = series_phases(seen.intensity, k, depth, processing)
+        phase = series_phases(seen.intensity, k, depth, processing, own.power)
         return derivative(offsets, wrapped(phase - phase[phase.size // 2]))
 
     def pair_slope(seen: Spectra) -> float:
-        before, after = series_phases(seen.intensity, k, depth, bench.processing)
+        before, after = series_phases(seen.intensity, k, depth, bench.processing, own.power)
         return float(wrapped(after - before)) / (2 * step)
 
     def slope_of(placed: Placed) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.config.derive import by_accuracy
+from octsim.config.derive import by_accuracy, with_flat_source
 from octsim.config.models import Config
 from octsim.datasets.files import make
 from octsim.instrument.instrument import Instrument
@@ -83,6 +83,7 @@ def causes(
     OctsimError
         If the law is needed and there is none, or nothing beats at one of the diameters.
     """
+    config = with_flat_source(config)  # causes are of the scene
     foci, line = sweep_foci(config, law), focus_line(config, law)
     run, converged = (Instrument(one, points) for one in (config, by_accuracy(config, _ACCURACY)))
     diameter = config.sweep.diameters.values()

@@ -7,6 +7,7 @@ from octsim.base.errors import OctsimError
 from octsim.config.abilities import as_far_as
 from octsim.config.derive import changed
 from octsim.config.models import Config
+from octsim.config.source import unlit
 from octsim.config.units import format_length
 from octsim.optics.band import wavenumbers
 from octsim.phase.derivatives import Array
@@ -31,7 +32,16 @@ class Band(NamedTuple):
 
 
 def bands_of(config: Config) -> list[Band]:
-    """Return the configured band, and those that are tried beside it."""
+    """Return the configured band, and those that are tried beside it.
+
+    Raises
+    ------
+    OctsimError
+        If the source does not light one.
+    """
+    for place, tried in enumerate(config.design.bands):
+        for problem in unlit(config.spectrum.source, tried):
+            raise OctsimError(f"design.bands.{place}: {problem}")
     own, samples = config.spectrum.wavelength, config.spectrum.samples
     pairs = dict.fromkeys(
         [(own.min, own.max), *((one.min, one.max) for one in config.design.bands)]

@@ -8,6 +8,7 @@ import xarray as xr
 
 from octsim.base.threads import each
 from octsim.config.models import Config
+from octsim.config.source import source_of
 from octsim.datasets.files import flags, make
 from octsim.phase.fringe_status import FringeStatus
 from octsim.schemes.light import AccuracyStatus
@@ -155,10 +156,14 @@ def _column(config: Config, bands: list[Band], at: Column, foci: list[float]) ->
     bench, settings = bench_of(config, at.aperture), config.design
     solved, tolerance = waves(config, at.aperture), config.calibration.tolerances.diameter
     index, material = solved.swept_group_index, solved.swept_material
+    source = source_of(config.spectrum.source)
     for focus in foci:
         for of_fill in cell(config, bench, bands, at.diameter, focus):
             for band, seen in zip(bands, of_fill, strict=True):
-                neuron = Neuron(at.diameter, index, band.wavenumber, seen.around, material)
+                neuron = Neuron(
+                    at.diameter, index, band.wavenumber, seen.around, material,
+                    None if source is None else source.power(band.wavenumber),
+                )  # fmt: skip
                 seed = SEED, at.number
                 yield Found(
                     known(seen, neuron, settings.photons, tolerance, seed), seen.error, seen.status

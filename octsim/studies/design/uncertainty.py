@@ -41,6 +41,8 @@ class Neuron(NamedTuple):
     """Modelled spectra at `OFFSETS` of the diameter, (5, K)."""
     material: Material | None = None
     """What it is of; None is of an index that is the same at all wavenumbers."""
+    power: Array | None = None
+    """Of the source, (K,); None of a flat one."""
 
 
 Estimator = Callable[[Neuron, Array, Array], Array]
@@ -52,7 +54,7 @@ def _held(**given: object) -> Estimator:
 
     def estimator(neuron: Neuron, spectra: Array, _: Array) -> Array:
         depth = neuron.n_neuron * neuron.diameter
-        return series_phases(spectra, neuron.wavenumber, depth, processing)
+        return series_phases(spectra, neuron.wavenumber, depth, processing, neuron.power)
 
     return estimator
 
@@ -60,7 +62,7 @@ def _held(**given: object) -> Estimator:
 def _following(neuron: Neuron, spectra: Array, offset: Array) -> Array:
     depth = neuron.n_neuron * (neuron.diameter + offset)
     sinusoid = Processing.model_validate({"estimator": "sinusoid"})
-    return phases(spectra, neuron.wavenumber, depth, sinusoid).phase
+    return phases(spectra, neuron.wavenumber, depth, sinusoid, neuron.power).phase
 
 
 def _likeliest(neuron: Neuron, spectra: Array, _: Array) -> Array:
@@ -122,7 +124,7 @@ def known(
     middle = OFFSETS.size // 2
     rest = seen.around[middle]
     depth = np.array([neuron.n_neuron * neuron.diameter])
-    fringe = fringe_at(rest[np.newaxis], neuron.wavenumber, depth, seen.error)
+    fringe = fringe_at(rest[np.newaxis], neuron.wavenumber, depth, seen.error, neuron.power)
     nothing = np.full(len(ESTIMATORS), np.nan)
     brightness, height = float(rest.mean()), _depth_peak(rest, neuron.wavenumber, depth)
     if fringe.status[0] not in WITH_PHASE:

@@ -85,10 +85,12 @@ class Bench:
         found = tuple(collected(optics, rays, larger) for optics in self._optics)
         limits = [self._spectrum(one, diameter, focus) for one in self._limits]
         exact, _, status = self._spectrum(self._exact, diameter, focus)
-        spectra = np.stack(
-            [*(one.intensity for one in found), *(one.intensity for one in limits)]
-        )  # fmt: skip
-        swapped = np.stack([one.swapped for one in found])
+        power = self._config.spectrum.power()
+        own, swapped = (
+            np.stack(each) if power is None else np.stack(each) * power
+            for each in ([one.intensity for one in found], [one.swapped for one in found])
+        )
+        spectra = np.stack([*own, *(one.intensity for one in limits)])
         fringe, phase = self._phases(np.vstack([spectra, swapped, exact]), diameter)
         shape = (len(SCHEMES), len(found))
         counted, limit, after = phase[:-1].reshape(3, -1)
@@ -111,9 +113,10 @@ class Bench:
     def _phases(self, spectra: Array, diameter: float) -> tuple[NDArray[np.int8], Array]:
         """Return the status of the fringe of spectra, and their phases, NaN without one."""
         depth = np.full(len(spectra), self._config.swept_group_index * diameter)
-        status = fringe_at(spectra, self._wavenumber, depth).status
+        power = self._config.spectrum.power()
+        status = fringe_at(spectra, self._wavenumber, depth, source=power).status
         phase, some = np.full(len(spectra), np.nan), np.flatnonzero(np.isin(status, WITH_PHASE))
-        fits = fit_sinusoid(spectra[some], self._wavenumber, depth[some], self._processing)
+        fits = fit_sinusoid(spectra[some], self._wavenumber, depth[some], self._processing, power)
         for part, fit in fits:
             phase[some[part]] = fit.phase
         return status, phase

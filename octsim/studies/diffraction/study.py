@@ -109,7 +109,7 @@ def diffraction(
     def phase_of(instrument: Instrument, at: Array, foci: Array) -> Array:
         spectra, k = instrument.spectra(at, foci, threads), instrument.wavenumber
         processing = by_estimator(config.processing, "sinusoid")
-        phases = sinusoid(spectra, k, instrument.nominal_depth(at), processing)
+        phases = sinusoid(spectra, k, instrument.nominal_depth(at), processing, instrument.power)
         return np.unwrap(phases.phase)
 
     intensity, phase, off = [], [], []

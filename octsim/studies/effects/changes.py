@@ -15,7 +15,7 @@ from octsim.phase.estimators.by_name import phases
 from octsim.phase.estimators.visible import fringe_at
 from octsim.phase.fringe_status import WITH_PHASE
 from octsim.phase.slopes import gradient, phase_slopes, phase_steps, slope_of
-from octsim.phase.transform import fourier_components
+from octsim.phase.transform import fourier_components, without_source
 
 Array = NDArray[np.float64]
 SINUSOID = Processing.model_validate({"estimator": "sinusoid"})
@@ -93,11 +93,12 @@ def seen(config: Config, diameter: Array, foci: Array, intensity: Array, error: 
         Its estimated errors; NaN or zero where there are none.
     """
     k, depth = config.spectrum.wavenumbers(), config.swept_group_index * diameter
-    status = fringe_at(intensity, k, depth, np.nan_to_num(error)).status
+    power = config.spectrum.power()
+    status = fringe_at(intensity, k, depth, np.nan_to_num(error), power).status
     has = np.isin(status, WITH_PHASE)
     phase = np.full(diameter.size, np.nan)
     if has.any():
-        phase[has] = phases(intensity[has], k, depth[has], SINUSOID).phase
+        phase[has] = phases(intensity[has], k, depth[has], SINUSOID, power).phase
     return Seen(intensity, phase, _configured(config, diameter, foci, intensity))
 
 
@@ -111,7 +112,8 @@ def _configured(config: Config, diameter: Array, foci: Array, intensity: Array) 
     if not 0 < step < aliasing_step(config.swept_material, k[0], k[-1]):
         return np.full(diameter.size, np.nan)
     if config.processing.estimator == "fft":
-        components = fourier_components(intensity, config.processing)
+        bare = without_source(intensity, config.spectrum.power())
+        components = fourier_components(bare, config.processing)
         return phase_slopes(diameter, np.abs(components), np.angle(components)).strongest
     return slope_of(diameter, estimator_of(config, foci)(intensity, diameter).phase)
 

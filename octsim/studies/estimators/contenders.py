@@ -14,7 +14,7 @@ from octsim.phase.estimators.estimate import Array
 from octsim.phase.estimators.likelihood import Model, maximum_likelihood
 from octsim.phase.estimators.series import series_phases
 from octsim.phase.slopes import phase_slopes, slope_of
-from octsim.phase.transform import fourier_components
+from octsim.phase.transform import fourier_components, without_source
 
 LIKELIHOOD = "maximum_likelihood"
 COMMON = "sinusoid_common_envelope"
@@ -51,6 +51,8 @@ class Band(NamedTuple):
     """Wavenumbers, (K,), 1/µm."""
     material: Material | None = None
     """What the neuron is of; None is of an index that is the same at all wavenumbers."""
+    power: Array | None = None
+    """Of the source, (K,); None of a flat one."""
 
     @property
     def predicted(self) -> float:
@@ -78,7 +80,8 @@ def sweep_phases(
     """
     if processing.estimator == LIKELIHOOD:
         return band.predicted * maximum_likelihood(intensity, model, processing.read_noise)
-    return phases(intensity, band.wavenumber, band.n_neuron * diameter, processing).phase
+    depth = band.n_neuron * diameter
+    return phases(intensity, band.wavenumber, depth, processing, band.power).phase
 
 
 def phases_of_series(
@@ -87,7 +90,8 @@ def phases_of_series(
     """Return the phases (T,), rad, of a series of spectra (T, K) at one nominal diameter, µm."""
     if processing.estimator == LIKELIHOOD:
         return band.predicted * maximum_likelihood(intensity, model, processing.read_noise)
-    return series_phases(intensity, band.wavenumber, band.n_neuron * diameter, processing)
+    depth = band.n_neuron * diameter
+    return series_phases(intensity, band.wavenumber, depth, processing, band.power)
 
 
 def sweep_slopes(
@@ -98,6 +102,6 @@ def sweep_slopes(
     Of fft it is that of each spectrum's strongest component, as in the stage phase_slope.
     """
     if processing.estimator == THESIS:
-        components = fourier_components(intensity, processing)
+        components = fourier_components(without_source(intensity, band.power), processing)
         return phase_slopes(diameter, np.abs(components), np.angle(components)).strongest
     return slope_of(diameter, sweep_phases(processing, band, diameter, intensity, model))

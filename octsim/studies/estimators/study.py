@@ -92,9 +92,12 @@ def estimators(
     by_paths = Instrument(by_accuracy(config, MODEL_ACCURACY), points)
     counted = Instrument(by_rays(config, config.tracing.rays), points)
     compared = contenders(config)
-    band = Band(config.swept_group_index, by_paths.wavenumber, config.swept_material)
+    band = Band(
+        config.swept_group_index, by_paths.wavenumber, config.swept_material, by_paths.power
+    )
     scenes = other_scenes(config, foci, threads, points)
-    require_fringe("estimators", scenes[0].intensity, band.wavenumber, band.n_neuron * diameter)
+    depth = band.n_neuron * diameter
+    require_fringe("estimators", scenes[0].intensity, band.wavenumber, depth, source=band.power)
     model = model_of_sweep(config, foci, threads, points)
     true = _true_slopes(by_paths, diameter, foci, threads)
     rough = counted.spectra(diameter, foci, threads)

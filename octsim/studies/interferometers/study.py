@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from octsim.config.derive import with_flat_source
 from octsim.config.models import Config
 from octsim.datasets.files import make
 from octsim.optics.two_beams import predicted_phase_slope
@@ -42,6 +43,7 @@ def interferometers(config: Config, threads: int = 1) -> xr.Dataset:
         scatter (case), and plates_error (case), the largest difference of a spectrum from Airy's
         sum over the largest intensity.
     """
+    config = with_flat_source(config)  # as the closed forms have it
     k, diameter = config.spectrum.wavenumbers(), config.sweep.diameters.values()
     seen = michelson(config)
     found = list(plates(config, diameter, threads))

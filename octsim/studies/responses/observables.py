@@ -11,7 +11,7 @@ from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.phase.derivatives import Array, wrapped
 from octsim.phase.estimators.series import series_phases
-from octsim.phase.transform import fourier_components, optical_depths
+from octsim.phase.transform import fourier_components, optical_depths, without_source
 from octsim.schemes.light import Found, Waves
 from octsim.studies.calibration.study import calibrating
 from octsim.studies.sides import SIDES, side_fields
@@ -38,6 +38,8 @@ class Observer(NamedTuple):
     """The run's, with the calibration's estimator."""
     transform: Processing
     """The run's, for its Fourier transform."""
+    power: Array | None = None
+    """Of the source, (K,); None of a flat one."""
 
     @property
     def groups(self) -> tuple[str, ...]:
@@ -54,12 +56,16 @@ class Observer(NamedTuple):
     def phases(self, intensity: Array) -> Array:
         """Return the phases of spectra (S, K), wrapped, rad, (S, M)."""
         k = self.wavenumber
-        whole = series_phases(intensity, k, self.depth, self.processing)
+        whole = series_phases(intensity, k, self.depth, self.processing, self.power)
         of_parts = [
-            series_phases(intensity[:, part], k[part], self.depth, self.processing)
+            series_phases(
+                intensity[:, part], k[part], self.depth, self.processing,
+                None if self.power is None else self.power[part],
+            )
             for part in self.parts
-        ]
-        transformed = fourier_components(intensity, self.transform)[:, self.components]
+        ]  # fmt: skip
+        bare = without_source(intensity, self.power)
+        transformed = fourier_components(bare, self.transform)[:, self.components]
         return np.column_stack([whole, *of_parts, np.angle(transformed)])
 
 
@@ -98,10 +104,14 @@ def observer_of(config: Config, rest: Array, depth: float) -> Observer:
                 f"{_FEWEST} are needed; give a wider band, or more samples"
             )
         parts.append(part)
-    magnitude = np.abs(fourier_components(rest[np.newaxis], config.processing)[0])
+    power = config.spectrum.power()
+    bare = without_source(rest[np.newaxis], power)
+    magnitude = np.abs(fourier_components(bare, config.processing)[0])
     magnitude[0] = -1  # of no depth
     strongest = np.argsort(magnitude)[::-1][:COMPONENTS]
-    return Observer(k, depth, tuple(parts), strongest, calibrating(config), config.processing)
+    return Observer(
+        k, depth, tuple(parts), strongest, calibrating(config), config.processing, power
+    )
 
 
 _ROUNDING = 1e-9

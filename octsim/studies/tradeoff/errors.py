@@ -13,7 +13,7 @@ from octsim.config.scheme import scheme_of
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 from octsim.phase.slopes import phase_slopes
-from octsim.phase.transform import fourier_components
+from octsim.phase.transform import fourier_components, without_source
 from octsim.studies.tradeoff.settings import CONVERGED_SAMPLES, FINER, Setting, is_of_the_trade
 
 Array = NDArray[np.float64]
@@ -90,7 +90,8 @@ def shape_errors(intensity: Array, exact: Array) -> Array:
 
 def strongest_slopes(config: Config, intensity: Array) -> Array:
     """Return the phase slope of the strongest component (D,), mrad/nm, of spectra (D, K)."""
-    components = fourier_components(intensity, config.processing)
+    bare = without_source(intensity, config.spectrum.power())
+    components = fourier_components(bare, config.processing)
     diameters = config.sweep.diameters.values()
     return phase_slopes(diameters, np.abs(components), np.angle(components)).strongest
 

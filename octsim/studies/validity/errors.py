@@ -58,7 +58,8 @@ def by_estimator(processing: Processing, estimator: str) -> Processing:
 
 def seen(instrument: Instrument, window: Window) -> Seen:
     """Return what an instrument sees in a window of diameters."""
-    k, processing = instrument.wavenumber, instrument.config.processing
+    k, power = instrument.wavenumber, instrument.power
+    processing = instrument.config.processing
     index = instrument.config.swept_group_index
     points = {
         (diameter, focus): instrument.spectrum(diameter, focus)
@@ -74,18 +75,18 @@ def seen(instrument: Instrument, window: Window) -> Seen:
     worst = max(points.values(), key=lambda point: point.status)
     error = max(point.error for point in points.values())
     hiding = hiding_error(np.array([error]), np.array([worst.status]))
-    fringe = FringeStatus(int(fringe_at(middle, k, depth, hiding).status[0]))
+    fringe = FringeStatus(int(fringe_at(middle, k, depth, hiding, power).status[0]))
     if fringe not in WITH_PHASE:
         shape = middle[0] / middle[0].mean()
         return Seen(np.full((2, 2), np.nan), np.nan, np.nan, shape, error, fringe, worst.status)
     slope = [
         [
-            local_slope(spectra, k, window.diameter, index, by_estimator(processing, name))
+            local_slope(spectra, k, window.diameter, index, by_estimator(processing, name), power)
             for name in ESTIMATORS
         ]
         for spectra in series
     ]
-    ((_, fit),) = fit_sinusoid(middle, k, depth, by_estimator(processing, "sinusoid"))
+    ((_, fit),) = fit_sinusoid(middle, k, depth, by_estimator(processing, "sinusoid"), power)
     return Seen(
         np.array(slope), float(fit.phase[0]), float(np.abs(fit.amplitude[0, 0]) / fit.offset[0, 0]),
         middle[0] / middle[0].mean(), error, fringe, worst.status,
