@@ -106,7 +106,7 @@ bench-slurm: .venv/dev .venv/slurm
 
 COMPILE = $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate
-RUN = --extra run --extra archive
+RUN = --extra run --extra archive --extra lab
 lock: .venv/bin/python
 	$(PIP) install uv
 	$(COMPILE) pyproject.toml $(RUN) --group build -o requirements.lock

@@ -79,9 +79,10 @@ CORES = int(os.environ.get("OCTSIM_CORES", workflow.cores))
 FOLDER = f"results/{run.run}"
 FIGURES = run_figures(run)
 SHARES = shares_of(run)  # a stage that takes long is scattered over several jobs
-# a measured series is a file of the user's: what stands in it counts, not its time, which another
-# clock may have set; one that is not there is said by the job
+# measured series and spectra are files of the user's: what stands in them counts, not their time,
+# which another clock may have set; one that is not there is said by the job
 SERIES = [file for file in [run.expansion.series] if file and Path(file).is_file()]
+SPECTRA = [file for file in run.measured.files.values() if Path(file).is_file()]
 LOCK = FileLock(f"{FOLDER}/.lock")  # held from the start of a run to its end
 # of other targets, what was asked for once: an archive has it too, brought up to date
 BESIDE = [file for file in (f"{FOLDER}/{target}.nc" for target in TARGETS) if Path(file).is_file()]
@@ -106,8 +107,9 @@ def made_from_rows(rows: tuple[Stage, ...]) -> dict[str, object]:
     codes = [code_of(row.name, run) for row in rows]
     codes += [figures_code(*row.figures) for row in rows if row.beside]
     keys = (key for row in rows for key in keys_read(row.name, run))
-    series = SERIES if "expansion" in {row.name for row in rows} else []
-    held = {file: digest_of(Path(file)) for file in series}
+    names = {row.name for row in rows}
+    files = [*(SERIES if "expansion" in names else []), *(SPECTRA if "measured" in names else [])]
+    held = {file: digest_of(Path(file)) for file in files}
     return made_from(" ".join(codes), *dict.fromkeys(keys)) | held
 
 
@@ -121,8 +123,8 @@ def sources(rows: tuple[Stage, ...]) -> dict[str, object]:
     names = {name for row in rows for name in inputs_of(row, run)} - {row.name for row in rows}
     found = {name: f"{FOLDER}/{name}.nc" for name in CATALOG if name in names}
     if "expansion" in {row.name for row in rows}:
-        # without a series the job says so at once, and nothing is calibrated for it
-        return found if SERIES else {}
+        # without phases or spectra the job says so at once, and nothing is calibrated for it
+        return found if SERIES or (run.expansion.series is None and SPECTRA) else {}
     # a job of a grid says at once that it is of a single config, or one without a cylinder that it
     # needs one, and no law is fitted for it
     alone = run.grid.varied or not rows[0].serves(run)

@@ -22,7 +22,7 @@ from octsim.base.provenance import PACKAGE
 from octsim.config.load import load_config
 from octsim.config.models import Cache
 from octsim.datasets.files import read, write
-from octsim.studies.calibration.expansion import series_in
+from octsim.studies.calibration.expansion_record import series_in
 
 CHECKOUT = PACKAGE.parent
 SERIES = "series.nc"

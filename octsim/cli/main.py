@@ -9,9 +9,9 @@ from typing import NoReturn
 
 from octsim.base.errors import OctsimError
 from octsim.base.surroundings import settle
-from octsim.cli import archive, cache, compare, reproduce
+from octsim.cli import archive, cache, compare, measured, reproduce
 
-MODULES = (archive, compare, reproduce, cache)
+MODULES = (measured, archive, compare, reproduce, cache)
 """Each adds commands of its own, and imports what does their work when one is asked for."""
 
 

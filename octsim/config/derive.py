@@ -10,6 +10,7 @@ from octsim.config.abilities import as_far_as
 from octsim.config.checks import require_possible
 from octsim.config.messages import explain
 from octsim.config.models import Config
+from octsim.config.processing import Processing
 from octsim.schemes.table import COUNTED_RAYS, FULL_WAVE, LIGHT_PATHS, PRESETS
 
 _PRESET = "tracing.preset"
@@ -130,6 +131,11 @@ def changed(config: Config, *overlays: Mapping[str, Any]) -> Config:
     if not other.grid.varied:
         require_possible(other)
     return other
+
+
+def calibrating(config: Config) -> Processing:
+    """Return the run's processing with the calibration's estimator."""
+    return config.processing.model_copy(update={"estimator": config.calibration.estimator})
 
 
 def with_flat_source(config: Config) -> Config:

@@ -100,6 +100,8 @@ _OF_TWO_KINDS = (
     ["expansion", "drift"],
     ["objective", "pupil"],
     ["spectrum", "source"],
+    ["measured", "axis"],
+    ["measured", "dispersion"],
 )
 _LISTS = (
     "processing.window", "scene.layers", "scene.cylinders", "scene.cylinders.shells",

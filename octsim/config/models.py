@@ -5,7 +5,6 @@ The models are the one source: `config/schema.json` and `docs/config.md` are gen
 """
 
 from collections.abc import Mapping
-from math import pi
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
 from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag
@@ -22,19 +21,19 @@ from octsim.config.fields import (
     Position,
     PositiveLength,
     Section,
-    Wavelength,
 )
 from octsim.config.fields import key as _key
 from octsim.config.light import FibreMode, GaussianFill, PolarisationConfig
 from octsim.config.light import Objective as Objective
+from octsim.config.measured import Measured as Measured
 from octsim.config.processing import Processing as Processing
 from octsim.config.resources import Budget, Scatter
 from octsim.config.resources import Cache as Cache
 from octsim.config.responses import Responses
 from octsim.config.scene import RefractiveIndex as RefractiveIndex
 from octsim.config.scene import SceneConfig as SceneConfig
-from octsim.config.source import SourceConfig, source_of
-from octsim.optics.band import wavenumbers
+from octsim.config.spectrum import Spectrum as Spectrum
+from octsim.config.spectrum import Wavelengths as Wavelengths
 from octsim.optics.materials import Material, group_index
 from octsim.schemes.table import COUNTED_RAYS, PRESETS, SCHEMES
 
@@ -69,45 +68,6 @@ class Tracing(Section):
     min_amplitude: Annotated[Number, Field(ge=0, lt=1)] = _key(
         0.0, "a fainter counted ray is dropped; relative to the launch amplitude"
     )
-
-
-class Wavelengths(Section):
-    """The band, in vacuum."""
-
-    min: Wavelength = _key("650 nm", "shortest wavelength")
-    max: Wavelength = _key("900 nm", "longest wavelength")
-
-
-class Spectrum(Section):
-    """The spectrum of the source and the samples taken of it."""
-
-    wavelength: Wavelengths = Wavelengths()
-    samples: Annotated[int, Field(ge=2, le=1_000_000)] = _key(
-        1000, "wavenumbers, evenly spaced, both ends included"
-    )
-    source: SourceConfig = _key(
-        "flat",
-        "its power at each wavelength: flat, {gaussian: {centre: 840 nm, fwhm: 50 nm}}, or a CSV "
-        "file of wavelength and power",
-    )
-
-    def wavenumbers(self) -> "NDArray[np.float64]":
-        """Return the wavenumbers 2π/λ, evenly spaced and increasing, shape (K,), 1/µm."""
-        return wavenumbers(self.wavelength.min, self.wavelength.max, self.samples)
-
-    def power(self) -> "NDArray[np.float64] | None":
-        """Return the source's power at the wavenumbers, over its largest, (K,); None of a flat one.
-
-        It is that of each sample, as a spectrometer counts: no factor dλ/dk is applied.
-        """
-        source = source_of(self.source)
-        return None if source is None else source.power(self.wavenumbers())
-
-    @property
-    def middle(self) -> float:
-        """Wavenumber in the middle of the band, 1/µm."""
-        band = self.wavelength
-        return (2 * pi / band.max + 2 * pi / band.min) / 2
 
 
 class FocusScan(Section):
@@ -209,8 +169,8 @@ _NO_RESULT = ("archive", "cache", "scatter")
 
 
 FIXED = (
-    "run", "calibration", "expansion", "action_potential", "responses", "design", "grid", "archive",
-    "cache", "budget", "scatter",
+    "run", "calibration", "measured", "expansion", "action_potential", "responses", "design",
+    "grid", "archive", "cache", "budget", "scatter",
 )  # fmt: skip
 """Sections that a run has once: what no stage over the grid depends on."""
 
@@ -234,6 +194,7 @@ class Config(Section):
     sweep: Sweep = Sweep()
     processing: Processing = Processing()
     calibration: Calibration = Calibration()
+    measured: Measured = Measured()
     expansion: ExpansionConfig = ExpansionConfig()
     action_potential: ActionPotential = ActionPotential()
     responses: Responses = Responses()

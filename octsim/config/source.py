@@ -141,8 +141,13 @@ def source_of(given: Any) -> Source | None:
 class Band(Protocol):
     """Wavelengths, µm."""
 
-    min: float
-    max: float
+    @property
+    def min(self) -> float:
+        """The shortest."""
+
+    @property
+    def max(self) -> float:
+        """The longest."""
 
 
 def unlit(given: Any, band: Band) -> Iterator[str]:

@@ -26,6 +26,11 @@ def shells_of(config: Config) -> int:
 
 def _fitted(config: Config) -> Iterator[str]:
     fit, bands = config.expansion.fit, config.expansion.bands
+    if config.expansion.series is not None and config.measured.spectra is not None:
+        yield (
+            f"expansion.series: {config.expansion.series} given, and measured.spectra too; give "
+            "one of the two, phases or spectra"
+        )
     shells = shells_of(config)
     for name in fit:
         word, _, number = name.partition("_")

@@ -31,7 +31,7 @@ _OPTIONAL = {
     *(f"detector.{name}" for name in _OF_FALLOFFS.values()),
 }
 """Keys that some choices read, and others do not."""
-_CALIBRATION = ("calibration", "expansion", "action_potential", "responses")
+_CALIBRATION = ("calibration", "measured", "expansion", "action_potential", "responses")
 """Sections of who asks for a calibration, which has an estimator of its own."""
 _WHOLE = (
     "scene", "objective", "detector", "tracing", "spectrum", "focus_scan", "focus_law", "sweep",

@@ -11,6 +11,32 @@ CALIBRATED = (
 """Keys that what is of spectra as accurate as small steps need reads, whatever the scheme."""
 OF_NEURONS = (
     Stage(
+        "measured", "octsim.studies.measured.study:measured",
+        "Read a spectrometer's spectra, and estimate the phase of each",
+        reads=("measured", "spectrum", "processing", "calibration.estimator",
+               "expansion.diameter", "scene"),
+        beside=True, plates=True,
+        summary="octsim.studies.measured.study:summary",
+        doubts="octsim.studies.measured.study:doubts",
+        figures=(
+            Figure("measured", "octsim.figures.measured:measured_figure",
+                   "measured spectra, what is fitted to their mean, and their phases"),
+        ),
+    ),
+    Stage(
+        "match", "octsim.studies.match.study:match_of_spectra",
+        "Fit the model to the mean of measured spectra",
+        reads=("scene", "objective", "polarisation", "spectrum", "calibration", "expansion",
+               "sweep.focus", "tracing.max_intersections"),
+        after=("measured", "calibration", "focus_law"), beside=True,
+        summary="octsim.studies.match.study:summary",
+        doubts="octsim.studies.match.study:doubts",
+        figures=(
+            Figure("match", "octsim.figures.match:match_figure",
+                   "a measured spectrum beside the modelled ones, and what fits best"),
+        ),
+    ),
+    Stage(
         "scenes", "octsim.studies.scenes.study:scenes",
         "Compare scenes about the configured one: myelin, membranes, neighbours, a tilt, a cover",
         reads=(*COMPARED, "beam", "polarisation", "interferometer"), after=("focus_law",),

@@ -38,6 +38,8 @@ class Layout:
         Dimension along which a part may hold some of a combination's points only.
     bare : callable, optional
         Returns the lengths of a config's dimensions that have no coordinate.
+    further : mapping, optional
+        What else the dataset says of itself, as attributes.
     """
 
     def __init__(
@@ -48,8 +50,10 @@ class Layout:
         own: Callable[[Config], Mapping[str, Coordinate]],
         swept: str | None = None,
         bare: Callable[[Config], Mapping[str, int]] = lambda _: {},
+        further: Mapping[str, str] | None = None,
     ) -> None:
         self.stage, self.config, self.title = stage, config, title
+        self.further = further or {}
         self.swept = swept
         self.axes: tuple[Axis, ...] = stage_axes(stage, config)
         self.combinations = tuple(combinations(config, *keys_behind(stage, config)))

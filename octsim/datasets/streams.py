@@ -129,7 +129,7 @@ def in_memory(stream: Stream) -> xr.Dataset:
     layout = stream.layout
     memory = _Memory(layout)
     pour(stream, memory)
-    described = attributes(layout.stage, layout.config, layout.title)
+    described = {**attributes(layout.stage, layout.config, layout.title), **layout.further}
     return xr.Dataset(memory.variables(), layout.coordinates, described)
 
 

@@ -6,6 +6,8 @@ from octsim.datasets.calibration_variables import CALIBRATION, scene_sensitivity
 from octsim.datasets.design_variables import DESIGN
 from octsim.datasets.detector_variables import DETECTOR
 from octsim.datasets.effects_variables import EFFECTS
+from octsim.datasets.match_variables import MATCH
+from octsim.datasets.measured_variables import MEASURED
 from octsim.datasets.responses_variables import RESPONSES
 from octsim.datasets.scenes_variables import SCENES
 from octsim.datasets.thesis_variables import DIFFRACTION, INTERFEROMETERS
@@ -252,6 +254,8 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     **EFFECTS,
     **SCENES,
     **RESPONSES,
+    **MATCH,
+    **MEASURED,
     **VALIDITY,
     **DIFFRACTION,
     **INTERFEROMETERS,

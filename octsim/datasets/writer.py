@@ -32,7 +32,8 @@ class _File:
                 file[name][:] = variable.values
             else:
                 file[name].assignValue(variable.values)
-        file.setncatts(attributes(layout.stage, layout.config, layout.title))
+        described = attributes(layout.stage, layout.config, layout.title)
+        file.setncatts({**described, **layout.further})
 
     def create(
         self,

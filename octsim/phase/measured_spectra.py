@@ -21,6 +21,7 @@ EVEN = 1e-6
 """Largest departure from even spacing, over the spacing, that counts as none."""
 FEWEST = 8
 """Fewest samples of a spectrum."""
+_DEGREE = 5
 AXES = ("wavenumber", "wavelength")
 SHORTEST, LONGEST = 0.05, 100.0
 """Wavelengths, µm, between which they may be those of a spectrometer: 'um' is no 'nm'."""
@@ -95,7 +96,7 @@ def _of_dataset(dataset: xr.Dataset, name: str) -> Raw:
         )
     units = str(dataset[axes[0]].attrs.get("units", ""))
     along = np.asarray(dataset[axes[0]].values, float)
-    return Raw(_wavenumbers(along, axes[0], units, name), np.atleast_2d(spectra.values), name)
+    return Raw(wavenumbers_of(along, axes[0], units, name), np.atleast_2d(spectra.values), name)
 
 
 def _problem(headings: Sequence[str]) -> str | None:
@@ -132,7 +133,7 @@ def _of_csv(path: Path) -> Raw:
             f"{path}, row {table.rows[at]}: {heading[0]} goes from {along[at - 1]:g} to "
             f"{along[at]:g}; sort the rows, each once"
         )
-    k = _wavenumbers(along, axis.name, axis.unit or "", str(path))
+    k = wavenumbers_of(along, axis.name, axis.unit or "", str(path))
     return Raw(k, np.array([values for _, values in columns]), str(path))
 
 
@@ -161,7 +162,7 @@ def _intensities(table: Table, place: int, name: str) -> Array:
     return found
 
 
-def _wavenumbers(along: Array, axis: str, units: str, name: str) -> Array:
+def wavenumbers_of(along: Array, axis: str, units: str, name: str) -> Array:
     """Convert wavelengths or wavenumbers of some unit to wavenumbers in 1/µm."""
     length = units if axis == "wavelength" else inverted(units)
     if axis == "wavenumber" and length == "cm":
@@ -183,8 +184,8 @@ def _wavenumbers(along: Array, axis: str, units: str, name: str) -> Array:
 def even(wavenumber: Array, intensity: Array, name: str) -> Measured:
     """Bring spectra to as many evenly spaced wavenumbers between the same ends.
 
-    By a cubic spline, whose error falls with the fourth power of the spacing. Values are taken as
-    they are, those of I at each wavenumber: no factor dλ/dk is applied.
+    By a spline, see `resampled`. Values are taken as they are, those of I at each wavenumber: no
+    factor dλ/dk is applied.
 
     Parameters
     ----------
@@ -229,7 +230,17 @@ def even(wavenumber: Array, intensity: Array, name: str) -> Measured:
         )
     target = np.linspace(wavenumber[0], wavenumber[-1], wavenumber.size)
     if np.abs(wavenumber - target).max() > EVEN * steps.mean():
-        from scipy.interpolate import CubicSpline  # half a second that few need
-
-        intensity = CubicSpline(wavenumber, intensity, axis=1)(target)
+        intensity = resampled(intensity, wavenumber, target)
     return Measured(np.ascontiguousarray(intensity, float), target)
+
+
+def resampled(intensity: Array, wavenumber: Array, target: Array) -> Array:
+    """Return spectra (D, K) at other wavenumbers within the same band, by a quintic spline.
+
+    A fringe of half as many oscillations as the samples resolve keeps its phase to 0.03 mrad (a
+    cubic one: 0.3 mrad), of a quarter as many to 3e-4 mrad.
+    """
+    from scipy.interpolate import make_interp_spline  # half a second that few need
+
+    found: Array = make_interp_spline(wavenumber, intensity, k=_DEGREE, axis=1)(target)
+    return found

@@ -84,7 +84,7 @@ def test_an_edit_of_the_scheme_paths_touches_no_run_by_counted_rays(
     beside = {
         "stability", "tradeoff", "validity", "causes", "estimators", "calibration",
         "action_potential", "detector", "effects", "diffraction", "interferometers", "responses",
-        "scenes",
+        "scenes", "match",
     }  # fmt: skip
     assert {one for one in found if one.startswith("vogel")} == {f"vogel {n}" for n in beside}
     assert {"paths detections", "paths focus_sweep", "paths focus_scan", "paths spectra"} <= found
@@ -102,7 +102,7 @@ def test_an_edit_of_a_stage_touches_that_stage_alone(changed: Callable[..., set[
         for stage in (
             "gaussian_fits", "focus_law", "detections", "spectra", "paths", "causes",
             "estimators", "calibration", "action_potential", "tradeoff", "design", "validity",
-            "detector", "effects", "responses", "scenes",
+            "detector", "effects", "responses", "scenes", "match",
         )
     }  # fmt: skip
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from octsim.base.errors import ConfigError, DatasetError, OctsimError
-from octsim.config.derive import by_rays, changed
+from octsim.config.derive import by_rays, calibrating, changed
 from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.datasets.files import read, write
@@ -22,7 +22,6 @@ from octsim.phase.derivatives import wrapped
 from octsim.phase.estimators.series import series_phases
 from octsim.schemes.light import AccuracyStatus
 from octsim.studies.calibration import slopes
-from octsim.studies.calibration import study as calibrate
 from octsim.studies.calibration.expansion import expansion
 from octsim.studies.calibration.parameters import PARAMETERS, parameters_of
 from octsim.studies.calibration.scheme import ACCURACY, ModelStatus, converged
@@ -33,7 +32,7 @@ from octsim.studies.calibration.tolerances import moved
 Array = NDArray[np.float64]
 K = Config().spectrum.wavenumbers()
 N = Config().scene.refractive_index.neuron
-FITTED = calibrate.calibrating(Config())
+FITTED = calibrating(Config())
 
 
 def test_the_fitted_sinusoid_of_plates_moves_as_predicted() -> None:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 import octsim
 from octsim.base.errors import ConfigError, OctsimError, OctsimWarning
+from octsim.config.derive import calibrating
 from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.figures.expansion import expansion_figure
@@ -21,7 +22,6 @@ from octsim.phase.derivatives import wrapped
 from octsim.phase.estimators.series import series_phases
 from octsim.phase.measured_series import Series, change_from_rest, read_series
 from octsim.phase.noise import shot_noise
-from octsim.studies.calibration import study as calibrate
 from octsim.studies.calibration.expansion import (
     LARGEST,
     doubts,
@@ -279,7 +279,7 @@ def test_the_phase_of_a_thicker_neuron_gives_its_thickness(
     focus, k = 0.58 * 1.4 + 0.066, config.spectrum.wavenumbers()
     spectra = Instrument(converged(config)).spectra((1.4, 1.4 + change / 1e3), (focus, focus))
     rest, moved = series_phases(
-        spectra, k, 1.4 * config.scene.refractive_index.neuron, calibrate.calibrating(config)
+        spectra, k, 1.4 * config.scene.refractive_index.neuron, calibrating(config)
     )
     found = expansion(wrapped(moved - rest), 1.4, calibrated)
     assert float(found.expansion) == pytest.approx(change, rel=1e-3)
@@ -295,7 +295,7 @@ def test_the_error_of_a_trace_covers_it_as_often_as_one_sigma_should() -> None:
     covered = []
     for seed in range(20):
         counts = shot_noise(at_rest, 1e8, np.random.default_rng(seed))
-        phase = series_phases(counts, k, 1.4 * n_neuron, calibrate.calibrating(config))
+        phase = series_phases(counts, k, 1.4 * n_neuron, calibrating(config))
         change = change_from_rest(Series(np.arange(240.0), phase), 60)
         covered.append((np.abs(change.phase) <= change.error)[60:].mean())
     # five of the mean's own deviations, about the share of a normal law within one

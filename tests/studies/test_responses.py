@@ -10,7 +10,7 @@ import xarray as xr
 from conftest import CALIBRATED
 from numpy.typing import NDArray
 
-from octsim.config.derive import changed
+from octsim.config.derive import calibrating, changed
 from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.config.units import format_length
@@ -25,7 +25,6 @@ from octsim.phase.estimators.series import series_phases
 from octsim.phase.measured_series import Series
 from octsim.studies.calibration.expansion_fit import series_fit
 from octsim.studies.calibration.scheme import converged
-from octsim.studies.calibration.study import calibrating
 from octsim.studies.responses.observables import bands_of, observer_of
 from octsim.studies.responses.quantities import (
     CONFIGURED,

@@ -5,6 +5,7 @@ import numpy as np
 from octsim.config.processing import Processing
 from octsim.phase.estimators.by_name import phases
 from octsim.phase.estimators.estimate import Array
+from octsim.phase.estimators.one_fit import Model, design_of, fitted
 from octsim.phase.transform import fourier_components, without_source
 
 
@@ -15,7 +16,8 @@ def series_phases(
     """Estimate the phases of a series, which is of one optical depth as far as is known.
 
     Of fft it is that of one component, the strongest of all spectra together, as phases of two
-    can't be compared.
+    can't be compared. Weights of shot noise are those of the mean spectrum: ones that followed each
+    spectrum would move the phase of what is no sinusoid with it.
 
     Parameters
     ----------
@@ -39,5 +41,16 @@ def series_phases(
         components = fourier_components(without_source(intensity, source), processing)
         strongest = 1 + int(np.abs(components[:, 1:]).sum(axis=0).argmax())
         return np.angle(components[:, strongest])
+    if processing.estimator == "sinusoid" and _weights_would_follow(processing):
+        model = Model(wavenumber, depth, processing.sinusoid, source)
+        design = design_of(model, intensity.mean(axis=0), processing.read_noise**2)
+        return fitted(design, intensity, np.ones_like(wavenumber)).phase
     depths = np.full(len(intensity), depth)
     return phases(intensity, wavenumber, depths, processing, source).phase
+
+
+def _weights_would_follow(processing: Processing) -> bool:
+    """Return whether each spectrum would have weights of its own, and a depth that is held."""
+    asked = processing.sinusoid
+    held = asked.depth == "held" and processing.depth == "nominal"
+    return held and asked.weights == "shot"

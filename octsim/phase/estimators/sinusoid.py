@@ -139,7 +139,7 @@ def fit_sinusoid(
         If the envelope is common, and the spectra are not of one depth.
     """
     options, variance = processing.sinusoid, processing.read_noise**2
-    envelope = _polynomials(wavenumber, options, source)
+    envelope = polynomials(wavenumber, options, source)
     if options.envelope == "common":
         envelope = _common(intensity, wavenumber, depth, processing, envelope)
     for begin in range(0, depth.size, CHUNK):
@@ -147,14 +147,13 @@ def fit_sinusoid(
         yield part, _fit(intensity[part], wavenumber, depth[part], options, variance, envelope)
 
 
-def _polynomials(wavenumber: Array, options: Options, source: Array | None) -> Envelope:
+def polynomials(wavenumber: Array, options: Options, source: Array | None) -> Envelope:
     """Return the powers of the place in the band, from −1 to 1, times the source."""
     x = place(wavenumber)[:, np.newaxis]
     amplitude = x ** np.arange(options.amplitude_degree + 1)
     offset = x ** np.arange(options.offset_degree + 1)
-    if source is not None:
-        offset, amplitude = (one * source[:, np.newaxis] for one in (offset, amplitude))
-    return Envelope(offset, amplitude.astype(complex))
+    power = 1.0 if source is None else source[:, np.newaxis]
+    return Envelope(offset * power, (amplitude * power).astype(complex))
 
 
 def _common(
@@ -187,7 +186,7 @@ def _equal(fitted: Array, _: Array, __: float) -> Array:
     return np.ones_like(fitted)
 
 
-_WEIGHTS: Mapping[str, Weigh] = {"shot": _shot, "equal": _equal}
+WEIGHTS: Mapping[str, Weigh] = {"shot": _shot, "equal": _equal}
 
 
 def _fit(
@@ -200,7 +199,7 @@ def _fit(
 ) -> Fit:
     """Fit amplitudes, offsets and, if that is asked for, depths."""
     fit = _FITS[options.depth]
-    return fit(intensity, wavenumber, depth, envelope, _WEIGHTS[options.weights], variance)
+    return fit(intensity, wavenumber, depth, envelope, WEIGHTS[options.weights], variance)
 
 
 def _held(
@@ -212,7 +211,7 @@ def _held(
     variance: float,
 ) -> Fit:
     """Fit at held depths: complex amplitudes, whose slope makes up for a depth that is off."""
-    columns = _columns(_waves(wavenumber, depth, envelope), envelope)
+    columns = columns_of(waves_of(wavenumber, depth, envelope), envelope)
     root = np.ones_like(intensity)
     found, triangle = _solve(columns, intensity, root)
     for _ in range(ROUNDS):
@@ -222,9 +221,8 @@ def _held(
         found, triangle = _solve(columns, intensity, root)
     offsets, cosines = envelope.offset.shape[1], envelope.amplitude.shape[1]
     cos, sin = found[:, offsets : offsets + cosines], found[:, offsets + cosines :]
-    places = offsets, offsets + cosines, -1
     return Fit(cos - 1j * sin, found[:, :offsets], depth, *_parts(columns, found, offsets), root,
-               triangle, places)  # fmt: skip
+               triangle, (offsets, offsets + cosines, -1))  # fmt: skip
 
 
 def _fitted(
@@ -247,7 +245,7 @@ def _fitted(
     for _ in range(STEPS):
         root = weights
         turn = amplitude[:, :1] / np.abs(amplitude[:, :1])
-        waves = _waves(wavenumber, depth, envelope)
+        waves = waves_of(wavenumber, depth, envelope)
         cos, sin = waves.real, waves.imag  # by their parts, as in `product`
         along = turn.real[:, np.newaxis] * cos[..., 1:] - turn.imag[:, np.newaxis] * sin[..., 1:]
         # amplitudes along the first one's phase
@@ -257,7 +255,7 @@ def _fitted(
             real, imaginary = sloped.real[:, q, np.newaxis], sloped.imag[:, q, np.newaxis]
             moved -= x * (cos[..., q] * imaginary + sin[..., q] * real)
         columns = np.concatenate(
-            [_columns(waves[..., :1], envelope), along, moved[..., np.newaxis]], axis=2
+            [columns_of(waves[..., :1], envelope), along, moved[..., np.newaxis]], axis=2
         )
         found, triangle = _solve(columns, intensity, root)
         first = found[:, offsets, np.newaxis] - 1j * found[:, offsets + 1, np.newaxis]
@@ -273,12 +271,12 @@ def _fitted(
 _FITS = {"held": _held, "fitted": _fitted}
 
 
-def _waves(wavenumber: Array, depth: Array, envelope: Envelope) -> NDArray[np.complex128]:
+def waves_of(wavenumber: Array, depth: Array, envelope: Envelope) -> NDArray[np.complex128]:
     """Return the oscillations with their amplitudes' shapes, (D, K, Q)."""
     return product(oscillation(wavenumber, depth)[..., np.newaxis], envelope.amplitude)
 
 
-def _columns(waves: NDArray[np.complex128], envelope: Envelope) -> Array:
+def columns_of(waves: NDArray[np.complex128], envelope: Envelope) -> Array:
     """Return what the real linear parameters multiply, (D, K, P + 2Q)."""
     offset = np.broadcast_to(envelope.offset, (waves.shape[0], *envelope.offset.shape))
     return np.concatenate([offset, waves.real, waves.imag], axis=2)

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from octsim.config.derive import calibrating
 from octsim.config.models import Config
 from octsim.datasets.files import make
 from octsim.instrument.instrument import Instrument
@@ -19,7 +20,7 @@ from octsim.stages.focus_law import focus_line
 from octsim.studies.calibration.expansion import expansion
 from octsim.studies.calibration.round_trips import Trips, round_trips, trip_diameters
 from octsim.studies.calibration.scheme import converged
-from octsim.studies.calibration.study import by_fft, calibrating
+from octsim.studies.calibration.study import by_fft
 
 DURATION = 1e-3
 """Of the action potential at half its height, s (docs/calibration.md cites measured ones)."""

@@ -12,6 +12,7 @@ from octsim.base.errors import ConfigError, DatasetError, OctsimError, OctsimWar
 from octsim.config.calibration import DIAMETER
 from octsim.config.models import Config
 from octsim.datasets.files import flags, make
+from octsim.measured.phases import series_of
 from octsim.phase.measured_bands import read_series_of_bands
 from octsim.phase.measured_series import Series, read_series
 from octsim.phase.outliers import Standing, outliers
@@ -132,24 +133,31 @@ def _file_of(config: Config) -> str:
     """Return the file of the series that a config names; refuse a config that names none."""
     if config.expansion.series is None:
         raise ConfigError(
-            "expansion.series: not given; name the CSV or netCDF file that holds time and phase"
+            "expansion.series: not given; name the CSV or netCDF file that holds time and phase, "
+            "or give measured.spectra"
         )
     return config.expansion.series
 
 
 def expansion_of_series(
-    config: Config, calibration: xr.Dataset | None, responses: xr.Dataset | None = None
+    config: Config,
+    calibration: xr.Dataset | None,
+    responses: xr.Dataset | None = None,
+    measured: xr.Dataset | None = None,
 ) -> xr.Dataset:
     """Return the expansions of the series that a config names.
 
     By a calibration, see `series_expansion`; where phases are of several bands, or more than the
     diameter is fitted, by responses: see `octsim.studies.calibration.expansion_fit.series_fit`.
+    Phases are those of the file that ``expansion.series`` names, or of measured spectra.
 
     Raises
     ------
     OctsimError
         If there is no such series, or the series or the diameter does not serve.
     """
+    if measured is not None and config.expansion.series is None:
+        return _of_spectra(config, calibration, measured)
     file = _file_of(config)  # without one nothing else is there
     if config.expansion.several and responses is not None:
         series = read_series_of_bands(file, len(config.expansion.bands))
@@ -160,8 +168,29 @@ def expansion_of_series(
     return series_expansion(config, read_series(file), calibration)
 
 
-def series_expansion(config: Config, series: Series, calibration: xr.Dataset) -> xr.Dataset:
+def _of_spectra(config: Config, calibration: xr.Dataset | None, measured: xr.Dataset) -> xr.Dataset:
+    """Return the expansions of measured spectra."""
+    if config.expansion.several or calibration is None:
+        raise ConfigError(
+            "expansion.fit: more than the diameter, or bands given, but measured spectra have one "
+            "phase each; leave expansion.bands out and fit: [diameter]"
+        )
+    series = series_of(measured, config.measured.average)
+    return series_expansion(config, series, calibration, float(measured["chain_error"]))
+
+
+def series_expansion(
+    config: Config, series: Series, calibration: xr.Dataset, chain_error: float = 0.0
+) -> xr.Dataset:
     """Return the expansions of a series of phases.
+
+    Parameters
+    ----------
+    config : Config
+    series : Series
+    calibration : Dataset
+    chain_error : float
+        Relative error of changes of the phase by what was done before, as a source's spectrum.
 
     Returns
     -------
@@ -198,6 +227,7 @@ def series_expansion(config: Config, series: Series, calibration: xr.Dataset) ->
             "expansion.outliers: drop leaves them out"
         ) from None
     at = sensitivity_at(settings.diameter, calibration)
+    systematic = np.hypot(found.systematic_error, chain_error * np.abs(found.expansion))
     missing = np.where(np.isfinite(change.phase), 0.0, np.nan)
     measured = {"measured_phase": ("time", series.phase)}
     if series.phase_error is not None:
@@ -215,7 +245,7 @@ def series_expansion(config: Config, series: Series, calibration: xr.Dataset) ->
             "phase_change": ("time", change.phase),
             "expansion": ("time", found.expansion),
             "statistical_error": ("time", found.statistical_error),
-            "systematic_error": ("time", found.systematic_error + missing),
+            "systematic_error": ("time", systematic + missing),
             "diameter": settings.diameter,
             "fixed_focus_phase_slope": at.slope,
             "fixed_focus_phase_slope_standard_error": at.standard_error,
@@ -232,34 +262,6 @@ def series_expansion(config: Config, series: Series, calibration: xr.Dataset) ->
     for doubt in doubts(made):
         warnings.warn(doubt, OctsimWarning, stacklevel=2)
     return made
-
-
-def series_in(found: xr.Dataset) -> xr.Dataset:
-    """Return the measured series that an expansion records, as `read_series` reads it from netCDF.
-
-    Raises
-    ------
-    DatasetError
-        If it records none, as those of octsim 0.1.0.
-    """
-    names = {f"measured_{name}": name for name in ("phase", "phase_error")}
-    if "band" in found.dims:
-        return _series_of_bands_in(found)
-    held = {name: plain for name, plain in names.items() if name in found}
-    if "phase" not in held.values():
-        raise DatasetError("its measured series is not recorded in it")
-    return found[list(held)].rename(held).drop_attrs(deep=False)
-
-
-def _series_of_bands_in(found: xr.Dataset) -> xr.Dataset:
-    """Return them as `octsim.phase.measured_bands.read_series_of_bands` reads them."""
-    series = {
-        f"{name}_{band + 1}": found[f"measured_{name}"].isel(band=band, drop=True)
-        for name in ("phase", "phase_error")
-        if f"measured_{name}" in found
-        for band in range(found.sizes["band"])
-    }
-    return xr.Dataset(series).drop_attrs(deep=False)
 
 
 def summary(found: xr.Dataset) -> str:

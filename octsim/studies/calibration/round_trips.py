@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from octsim.base.threads import each
+from octsim.config.derive import calibrating
 from octsim.config.models import Config
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
@@ -16,7 +17,6 @@ from octsim.phase.noise import shot_noise
 from octsim.stages.focus_law import focus_line
 from octsim.studies.calibration.expansion import Expansion, expansion
 from octsim.studies.calibration.scheme import converged
-from octsim.studies.calibration.study import calibrating
 from octsim.studies.calibration.tolerances import Place, drawn
 
 TRIALS = 200

@@ -8,7 +8,7 @@ import xarray as xr
 from scipy.interpolate import CubicSpline
 
 from octsim.base.threads import each
-from octsim.config.derive import by_rays
+from octsim.config.derive import by_rays, calibrating
 from octsim.config.maxwell import beyond_maxwell
 from octsim.config.models import Config
 from octsim.config.processing import Processing
@@ -36,11 +36,6 @@ RAYS = 3000
 """The thesis's rays, whose slope over such steps is stored beside, to compare."""
 _POINTS = 17
 """Spectra of each parameter, of the curvature, and of each other scheme or less."""
-
-
-def calibrating(config: Config) -> Processing:
-    """Return the run's processing with the calibration's estimator."""
-    return config.processing.model_copy(update={"estimator": config.calibration.estimator})
 
 
 def by_fft(config: Config) -> Processing:

@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 from octsim.base.errors import ConfigError
 from octsim.config.calibration import Band
+from octsim.config.derive import calibrating
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.phase.derivatives import Array, wrapped
 from octsim.phase.estimators.series import series_phases
 from octsim.phase.transform import fourier_components, optical_depths, without_source
 from octsim.schemes.light import Found, Waves
-from octsim.studies.calibration.study import calibrating
 from octsim.studies.sides import SIDES, side_fields
 
 WHOLE = "whole"

@@ -15,12 +15,7 @@ from octsim.datasets.files import read, write
 from octsim.figures.expansion import expansion_figure
 from octsim.figures.style import look, save
 from octsim.phase.measured_series import Series
-from octsim.studies.calibration.expansion import (
-    doubts,
-    expansion_of_series,
-    series_in,
-    summary,
-)
+from octsim.studies.calibration.expansion import doubts, expansion_of_series, summary
 from octsim.studies.calibration.expansion_fit import (
     LARGEST,
     Matrix,
@@ -28,6 +23,7 @@ from octsim.studies.calibration.expansion_fit import (
     matrix_at,
     series_fit,
 )
+from octsim.studies.calibration.expansion_record import series_in
 from octsim.studies.responses.separability import Separability
 
 Array = NDArray[np.float64]

@@ -1,0 +1,69 @@
+"""The command `octsim import`: a spectrometer's file in octsim's own form."""
+
+import argparse
+import sys
+from argparse import Namespace
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+_FIELDS = ("at", "x", "dark", "reference", "rate", "full_scale")
+"""Options that are keys of the section measured."""
+_BY_ITSELF = {"depth": "peak", "sinusoid": {"weights": "shot"}}
+"""How spectra are processed of which no config tells more."""
+
+
+def add(commands: "argparse._SubParsersAction[Any]") -> None:
+    """Add the command."""
+    parser = commands.add_parser(
+        "import",
+        help="read a spectrometer's spectra, and estimate the phase of each",
+        description=(
+            "Write measured.nc: a spectrometer's spectra in octsim's form, each with its phase, "
+            "and print what was understood of the files. The options are keys of the config's "
+            "section `measured`; what else they can be stands in a config."
+        ),
+    )
+    parser.add_argument("spectra", nargs="?", help="file with raw spectra")
+    parser.add_argument("--config", help="config of the run, as YAML")
+    parser.add_argument("--output", default="measured.nc", help="file to write (measured.nc)")
+    parser.add_argument("--at", help="name inside the file, as /raw/spectra")
+    parser.add_argument("--x", type=int, help="which place across, of three-dimensional data")
+    parser.add_argument("--axis", help="file with a wavelength for each sample")
+    parser.add_argument("--dark", help="file with spectra without light")
+    parser.add_argument("--reference", help="file with the source's own spectra, raw")
+    parser.add_argument("--rate", help="of spectra, as '20 kHz'")
+    parser.add_argument("--full-scale", type=float, help="counts at which the camera is full")
+    parser.set_defaults(do=do, failed=1)
+
+
+def do(given: Namespace) -> int:
+    """Read, fit, write and tell."""
+    from octsim.config.load import load_config
+    from octsim.datasets.files import opened
+    from octsim.datasets.writer import write_stream
+    from octsim.studies.measured.study import doubts, measured, own_band, summary
+
+    asked: dict[str, Any] = {
+        name: getattr(given, name) for name in _FIELDS if getattr(given, name) is not None
+    }
+    if given.spectra is not None:
+        asked["spectra"] = given.spectra
+    if given.axis is not None:
+        asked["axis"] = {"wavelength": given.axis}
+    overlays: list[str | Mapping[str, Any]] = [given.config] if given.config else []
+    if not given.config:
+        # nothing says which part of the spectra is meant, or at which depth: all, and the peak's
+        band = own_band(load_config({"measured": asked}))
+        overlays.append({"spectrum": band, "processing": _BY_ITSELF})
+    config = load_config(*overlays, {"measured": asked})
+    output = Path(given.output)
+    write_stream(measured.stream(config), output)
+    with opened(output, "measured", config) as found:
+        for line in str(found.attrs["understood"]).splitlines():
+            if not line.startswith("warning: "):
+                print(line)
+        print(f"{output}: {summary(found)}")
+        for doubt in doubts(found):
+            print(f"octsim: warning: {doubt}", file=sys.stderr)
+    return 0

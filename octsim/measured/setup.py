@@ -1,0 +1,186 @@
+"""What is found out of a recording before its phases are: axis, levels, depth, noise, fit."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from octsim.base.errors import ConfigError
+from octsim.config.derive import calibrating
+from octsim.config.measured import Dispersion
+from octsim.config.models import Config
+from octsim.config.source import source_of
+from octsim.measured.axis import Axis, axis_of, samples_of, seconds_of, within
+from octsim.measured.background import Mean, mean_of, source_by
+from octsim.measured.chain_error import reference_error
+from octsim.measured.dispersion import fitted, phase_over
+from octsim.measured.full_scale import full_scale_of, saturated
+from octsim.measured.noise import Transfer, transfer
+from octsim.measured.recording import Recording
+from octsim.phase.estimators import estimate
+from octsim.phase.estimators.estimate import Estimate
+from octsim.phase.estimators.one_fit import Design, Model, design_of, residuals, still_part
+from octsim.phase.measured_spectra import resampled
+from octsim.phase.transform import without_source
+
+Array = NDArray[np.float64]
+FIRST = 512
+"""Spectra at the start, whose mean tells depth, weights and noise."""
+KNOWN_FROM = {"reference": "measured.reference", "config": "spectrum.source", "none": "flat"}
+"""Where the source's spectrum is from."""
+
+
+class Setup(NamedTuple):
+    """All that the phases of a recording are found by."""
+
+    wavenumber: Array
+    """Of all samples, rising, (S,), 1/µm."""
+    order: NDArray[np.int64]
+    """Which sample of the recording each is, (S,)."""
+    band: Axis
+    """Samples that are fitted, (K,)."""
+    time: Array
+    """(T,), s."""
+    dark: Mean | None
+    source: Array | None
+    """Power of the source in the band, (K,); None of a flat one."""
+    source_from: str
+    """A key of `KNOWN_FROM`."""
+    mean: Array
+    """Of the first spectra, without the dark, (K,)."""
+    full_scale: float
+    """Counts; infinite where it is not known."""
+    model: Model
+    design: Design
+    noise: Transfer
+    variance: Array
+    """Of each sample's counts, (K,)."""
+    fringe: Estimate
+    """Of the mean spectrum, (1,)."""
+    dispersion: tuple[float, float]
+    """a2 and a3, rad."""
+    chain_error: float
+    """Relative error of changes of the phase, by what is before it."""
+
+    @property
+    def spectra(self) -> int:
+        """How many there are."""
+        return self.time.size
+
+    def net(self, block: NDArray[np.generic]) -> Array:
+        """Return the band of spectra as they are recorded, (T, S) to (T, K), without the dark."""
+        counts = np.asarray(block[:, self.band.sample], float)
+        return counts - self.dark.value if self.dark else counts
+
+
+def setup_of(config: Config, recording: Recording) -> Setup:
+    """Return what the phases of a recording are found by.
+
+    Raises
+    ------
+    OctsimError
+        If something is missing or does not fit; in a line that says what to do.
+    """
+    asked = config.measured
+    k = axis_of(recording, asked.axis, samples_of(asked.axis))
+    time, band = seconds_of(recording, asked.rate), within(k, config.spectrum.wavelength)
+    dark = mean_of("measured.dark", asked.dark, k.size, band) if asked.dark else None
+    full, net = _first(recording, band, dark, asked.full_scale)
+    mean = net.mean(axis=0)
+    source, source_error, known_from = _source(config, k.size, dark, mean, band)
+    processing = calibrating(config)
+    nominal = _nominal(config)
+    even = np.linspace(band.wavenumber[0], band.wavenumber[-1], band.wavenumber.size)
+    on_even = None if source is None else resampled(source[np.newaxis], band.wavenumber, even)[0]
+    mean_even = resampled(mean[np.newaxis], band.wavenumber, even)
+    dispersion = _dispersion(asked.dispersion, mean_even, even, on_even)
+    processing = processing.model_copy(update={"estimator": "sinusoid"})
+    held = nominal
+    if not np.isfinite(held):
+        peak = estimate(mean_even, even, np.array([nominal]), processing, source=on_even).depth[0]
+        held = peak if np.isfinite(peak) else config.swept_group_index * config.expansion.diameter
+    model = Model(
+        band.wavenumber, float(held), processing.sinusoid, source,
+        phase_over(band.wavenumber, *dispersion) if any(dispersion) else None,
+        asked.reference_depth,
+    )  # fmt: skip
+    design = design_of(model, mean, processing.read_noise**2)
+    noise = transfer(mean, _variance(design, net))
+    if processing.sinusoid.weights == "shot":
+        design = design_of(model, mean, noise.read_noise**2)
+    alone = resampled((mean - still_part(design, mean))[np.newaxis], band.wavenumber, even)
+    fringe = estimate(alone, even, np.array([nominal]), processing, source=on_even)
+    order = np.argsort(k)
+    return Setup(
+        k[order], order, band, time, dark, source, known_from, mean, full, model, design, noise,
+        noise.variance(mean), fringe, dispersion,
+        reference_error(model, design, mean, source_error, noise.read_noise**2),
+    )  # fmt: skip
+
+
+def _first(
+    recording: Recording, band: Axis, dark: Mean | None, given: float | None
+) -> tuple[float, Array]:
+    """Return the camera's full scale, and the first spectra that are not full, without the dark."""
+    first = np.asarray(recording.counts[:FIRST])[:, band.sample]
+    full = full_scale_of(first, given)
+    whole = saturated(first, full) == 0
+    if not whole.any():
+        raise ConfigError(
+            f"measured.spectra: all of the first {len(first)} spectra have samples at "
+            f"{full:g} counts, where the camera is full; expose for less, or give "
+            "measured.full_scale"
+        )
+    net = first[whole].astype(float) - (dark.value if dark else 0.0)
+    if not np.isfinite(net).all():
+        at = int(np.argwhere(~np.isfinite(net))[0][0])
+        raise ConfigError(
+            f"measured.spectra: spectrum {at} of {recording.name} holds values that are no "
+            "numbers; leave it out"
+        )
+    return full, net
+
+
+def _nominal(config: Config) -> float:
+    """Return the optical depth at which the fringe is by the config, µm; NaN where its peak is."""
+    asked = config.processing.depth
+    if asked == "peak":
+        return np.nan
+    of_diameter = config.swept_group_index * config.expansion.diameter
+    return asked if isinstance(asked, float) else of_diameter
+
+
+def _source(
+    config: Config, samples: int, dark: Mean | None, mean: Array, band: Axis
+) -> tuple[Array | None, Array, str]:
+    """Return the source's power in the band, its error, and where it is from."""
+    exact = np.zeros(band.sample.size)
+    if config.measured.reference is not None:
+        reference = mean_of("measured.reference", config.measured.reference, samples, band)
+        return *source_by(reference, dark, mean, band), "reference"
+    given = source_of(config.spectrum.source)
+    if given is None:
+        return None, exact, "none"
+    return given.power(band.wavenumber), exact, "config"
+
+
+def _dispersion(
+    asked: Dispersion | str, mean: Array, wavenumber: Array, source: Array | None
+) -> tuple[float, float]:
+    if isinstance(asked, Dispersion):
+        return asked.a2, asked.a3
+    bare = without_source(mean, source)[0] if source is not None else mean[0] - mean[0].mean()
+    return fitted(bare, wavenumber)
+
+
+def _variance(design: Design, net: Array) -> Array:
+    """Return the variance of each sample, (K,), by what fits leave of spectra, one after the other.
+
+    What the model does not have is the same in all of them, and goes with the difference of two.
+    """
+    left, used = residuals(design, net), design.columns.shape[1]
+    samples = net.shape[1]
+    share = samples / max(samples - used, 1)
+    if len(left) < 3:  # one or two spectra: what is left of each tells
+        return np.asarray((left**2).mean(axis=0) * share)
+    return np.asarray((np.diff(left, axis=0) ** 2).mean(axis=0) / 2 * share)

@@ -1,0 +1,96 @@
+"""What was understood of a lab's files, a line each; what is doubtful begins with `warning: `."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from octsim.config.models import Config
+from octsim.measured.full_scale import saturated
+from octsim.measured.recording import Recording
+from octsim.measured.setup import FIRST, Setup
+from octsim.phase.fringe_status import FringeStatus
+
+_DIM = 0.01
+"""Of the source's largest power, below which a sample says next to nothing."""
+_FAR = 0.25
+"""Of an oscillation over the band, from which a fringe is elsewhere than at its nominal depth."""
+
+
+def understood(config: Config, recording: Recording, setup: Setup) -> list[str]:
+    """Return what was taken for what, and what it comes to."""
+    return [*recording.understood, *_told(config, recording, setup), *_doubted(config, setup)]
+
+
+def _told(config: Config, recording: Recording, setup: Setup) -> Iterator[str]:
+    band, fringe = setup.band, setup.fringe
+    whole = 2 * np.pi / setup.wavenumber
+    yield (
+        f"{setup.spectra} spectra of {setup.wavenumber.size} samples, {1e3 * whole.min():.6g} to "
+        f"{1e3 * whole.max():.6g} nm, over {setup.time[-1]:.6g} s"
+    )
+    yield (
+        f"fitted from {1e3 * band.wavelength.min():.6g} to {1e3 * band.wavelength.max():.6g} nm, "
+        f"{band.sample.size} samples"
+    )
+    if setup.dark is not None:
+        yield f"dark: {setup.dark.spectra} spectra, mean level {setup.dark.value.mean():.4g} counts"
+    yield f"source: {_SOURCES[setup.source_from]}"
+    full = "not known" if np.isinf(setup.full_scale) else f"{setup.full_scale:g} counts"
+    count = int((saturated(np.asarray(recording.counts[:FIRST]), setup.full_scale) > 0).sum())
+    yield f"full scale: {full}; {count} of the first {min(FIRST, setup.spectra)} spectra reach it"
+    per_count = setup.noise.per_count
+    photons = f"{1 / per_count:.3g} photoelectrons a count" if per_count > 0 else "no shot noise"
+    yield f"noise: {photons}, {np.sqrt(setup.noise.read_variance):.3g} counts without light"
+    oscillations = setup.model.depth * np.ptp(band.wavenumber) / np.pi
+    yield (
+        f"fringe at {setup.model.depth:.5g} um, {oscillations:.3g} oscillations over the band; of "
+        f"the mean spectrum at {float(fringe.depth[0]):.5g} um, visibility "
+        f"{float(fringe.visibility[0]):.3g}, {float(fringe.snr[0]):.3g} dB, residual "
+        f"{float(fringe.residual[0]):.3g} counts"
+    )
+    if config.measured.dispersion == "fit":
+        yield "dispersion: a2 {:+.4g} rad, a3 {:+.4g} rad at the band's edge".format(
+            *setup.dispersion
+        )
+
+
+_SOURCES = {
+    "reference": "measured.reference", "config": "spectrum.source",
+    "none": "none given, taken for flat",
+}  # fmt: skip
+
+
+def _doubted(config: Config, setup: Setup) -> Iterator[str]:
+    if setup.source_from == "none":
+        yield (
+            "warning: measured.reference: not given, and spectrum.source is flat, so the source's "
+            "own shape is taken for the sample's: phases and their changes can be far off; give "
+            "the source's spectrum"
+        )
+    elif setup.source_from == "reference" and config.spectrum.source == "flat":
+        yield (
+            "warning: spectrum.source: flat, so a calibration is of another source than these "
+            "spectra; give it the source too, as a file of wavelength and power"
+        )
+    if setup.dark is None:
+        yield (
+            "warning: measured.dark: not given, so the camera's level without light counts as "
+            "light; give spectra of a closed shutter"
+        )
+    status = FringeStatus(int(setup.fringe.status[0]))
+    if remedy := status.measured_remedy:
+        yield f"warning: the mean spectrum is {status.name.lower()}: {remedy}"
+    apart = abs(float(setup.fringe.depth[0]) - setup.model.depth)
+    if apart * np.ptp(setup.band.wavenumber) / np.pi > _FAR:
+        yield (
+            f"warning: the mean spectrum's fringe is at {float(setup.fringe.depth[0]):.4g} um, not "
+            f"at {setup.model.depth:.4g} um; check expansion.diameter, the neuron's index and the "
+            "wavelengths"
+        )
+    if config.processing.sinusoid.weights == "equal" and setup.source is not None:
+        dim = float((setup.source < _DIM).mean())
+        yield (
+            "warning: processing.sinusoid.weights: equal, though samples differ in brightness"
+            f"{f' and {dim:.0%} hold hardly any light' if dim > _DIM else ''}; give shot, for "
+            "phases that are known better"
+        )

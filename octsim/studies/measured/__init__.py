@@ -1,0 +1,1 @@
+"""A lab's own spectra, in octsim's form."""

@@ -1,0 +1,102 @@
+"""A spectrum of a known neuron: the model that fits it is that neuron, as far as noise tells."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from octsim.base.errors import ConfigError
+from octsim.config.derive import changed
+from octsim.config.load import load_config
+from octsim.config.maxwell import by_maxwell
+from octsim.config.models import Config
+from octsim.figures.match import match_figure
+from octsim.figures.style import look
+from octsim.instrument.instrument import Instrument
+from octsim.studies.match.fit import PARAMETERS, Observed, match
+from octsim.studies.match.study import doubts, match_of_spectra
+
+CONFIG = load_config({
+    "tracing": {"scheme": "fullwave", "accuracy": 1e-3},
+    "spectrum": {"samples": 100},
+    "sweep": {"focus": {"slope": 0.581, "intercept": "69 nm"}},
+})  # fmt: skip
+DIAMETER, FOCUS = 1.4, 0.8824
+PHOTONS = 1e9
+
+
+def observed(config: Config, diameter: float, focus: float, seed: int = 1) -> Observed:
+    instrument = Instrument(by_maxwell(config, 1e-5))
+    k = instrument.wavenumber
+    source = np.exp(-(((k - 8.3) / 1.2) ** 2))
+    light = instrument.spectrum(diameter, focus).intensity * source
+    light *= PHOTONS / light.sum()
+    counts = np.random.default_rng(seed).poisson(light).astype(float)
+    return Observed(k, counts, source, np.sqrt(light))
+
+
+def other(**scene: Any) -> Config:
+    return changed(CONFIG, {"scene": scene})
+
+
+@pytest.fixture(scope="module")
+def found() -> Any:
+    truth = other(gap="9 nm", refractive_index={"neuron": 1.392})
+    return match(by_maxwell(CONFIG, 1e-4), observed(truth, 1.43, 0.895), DIAMETER, FOCUS)
+
+
+def test_what_fits_best_is_the_neuron_that_it_is(found: Any) -> None:
+    true = dict(zip(PARAMETERS, (0.03, 0.004, 0.895 - FOCUS, 0.0, 0.002), strict=True))
+    error = np.sqrt(np.diag(found.covariance))
+    for place, (name, value) in enumerate(true.items()):
+        assert abs(found.change[place] - value) < 4 * error[place] + 1e-5, name
+    assert error[0] < 5e-3
+
+
+def test_its_chi_square_is_that_of_noise_and_the_config_s_is_not(found: Any) -> None:
+    freedom = 100 - len(PARAMETERS) - 1
+    assert found.chi_square / freedom == pytest.approx(1, abs=0.5)
+    assert found.configured_chi_square > 100 * found.chi_square
+
+
+def dataset(**changes: float) -> xr.Dataset:
+    names = list(PARAMETERS)
+    believed = np.array([1.4, 0.005, 0.88, 1.0, 1.39])
+    matched = believed + [changes.get(name, 0.0) for name in names]
+    k = np.linspace(7, 9.6, 50)
+    return xr.Dataset(
+        {
+            "believed": ("parameter", believed), "matched": ("parameter", matched),
+            "matched_error": ("parameter", np.full(5, 1e-4)),
+            "match_tolerance": ("parameter", np.array([0.02, 0.002, 0.01, 0.05, 0.002])),
+            "misfit": changes.get("misfit", 0.0), "configured_misfit": 0.1,
+            "source_difference": changes.get("source", 0.0),
+            "measured_spectrum": ("wavenumber", 100 + k),
+            "measured_spectrum_error": ("wavenumber", 0 * k + 1),
+            "modelled_spectrum": ("wavenumber", 101 + k),
+            "matched_spectrum": ("wavenumber", 100 + k),
+        },
+        {"parameter": names, "wavenumber": k, "wavelength": ("wavenumber", 2 * np.pi / k)},
+        {"config": '{"run": "thesis"}'},
+    )  # fmt: skip
+
+
+def test_a_neuron_that_is_another_is_said() -> None:
+    assert not list(doubts(dataset()))
+    assert "neuron fits best at 1.4, +0.01" in next(doubts(dataset(neuron=0.01)))
+    assert "no neuron of this scene" in next(doubts(dataset(misfit=0.2)))
+    assert "the calibration is of another one" in next(doubts(dataset(source=0.2)))
+
+
+def test_it_is_drawn_beside_what_is_believed() -> None:
+    with look():
+        figure = match_figure(dataset(neuron=0.001))
+    labels = [one.get_text() for one in figure.axes[2].get_yticklabels()]
+    assert labels == list(PARAMETERS)
+
+
+def test_a_scene_that_maxwell_is_not_solved_for_is_refused() -> None:
+    steep = load_config({"objective": {"numerical_aperture": 1.4}})
+    with pytest.raises(ConfigError, match="match: spectra are compared with Maxwell"):
+        match_of_spectra(steep, xr.Dataset(), xr.Dataset())
