@@ -17,7 +17,9 @@ MEASURED = frozenset(
     }
 )  # fmt: skip
 """Variables that a clock or the system gave, or that follow from one: another run has others."""
-WRAPPED = frozenset({"phase", "field_phase", "estimated_phase", "spike_leaked_phase"})
+WRAPPED = frozenset(
+    {"phase", "field_phase", "estimated_phase", "fringe_phase", "spike_leaked_phase"}
+)
 """Angles that are known but for whole turns."""
 
 UNKNOWN = frozenset({"phase", "component_phase_slope"})

@@ -20,13 +20,15 @@ from octsim.base.errors import DatasetError, OctsimError, not_installed
 from octsim.base.files import require_empty, require_folder, whole
 from octsim.base.provenance import PACKAGE
 from octsim.config.load import load_config
-from octsim.config.models import Cache
+from octsim.config.models import Cache, Measured
 from octsim.datasets.files import read, write
 from octsim.studies.calibration.expansion_record import series_in
 
 CHECKOUT = PACKAGE.parent
 SERIES = "series.nc"
 """A measured series that an expansion was made from, in the folder."""
+_OF_FILES = ("measured", "expansion", "match")
+"""Datasets that are made from a lab's own spectra, where a config names some."""
 LOG = "snakemake.log"
 
 
@@ -80,6 +82,7 @@ def reproduce(original: Recorded, folder: Path, cores: int) -> Recorded:
     OctsimError
         If the config is refused, something that it needs is not recorded, or the run fails.
     """
+    _require_recorded(original)
     config = _harmless(original)
     load_config(config)
     expansion = original.datasets.get("expansion")
@@ -115,8 +118,21 @@ def _harmless(original: Recorded) -> dict[str, Any]:
     """Return a config that names no file outside the folder."""
     own = {"cache": Cache().model_dump(mode="json")}
     config: dict[str, Any] = original.config.to_dict() | own
+    config["measured"] = Measured().model_dump(mode="json")
     config["expansion"]["series"] = SERIES if "expansion" in original.datasets else None
     return config
+
+
+def _require_recorded(original: Recorded) -> None:
+    """Refuse datasets that were made from a lab's own spectra: these files are not recorded."""
+    if original.config.measured.spectra is None:
+        return
+    of_files = [name for name in _OF_FILES if name in original.datasets]
+    if of_files:
+        raise DatasetError(
+            f"{original.datasets[of_files[0]]}: made from {original.config.measured.spectra}, that "
+            f"is not recorded; leave {', '.join(of_files)} out by --only"
+        )
 
 
 def _series(expansion: Path) -> xr.Dataset:
