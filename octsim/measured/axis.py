@@ -1,6 +1,6 @@
 """Which wavenumber each sample of a spectrometer is of."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -149,6 +149,15 @@ def within(wavenumber: Array, band: Wavelengths) -> Axis:
             "give a wider band"
         )
     return Axis(k[inside], order[inside])
+
+
+def taken(block: NDArray[Any], samples: NDArray[np.int64]) -> NDArray[Any]:
+    """Return some samples of spectra (T, S), (T, K): by a slice where they stand one by one."""
+    step = int(samples[1] - samples[0])
+    if abs(step) == 1 and (np.diff(samples) == step).all():
+        end = int(samples[-1]) + step
+        return block[:, slice(int(samples[0]), end if end >= 0 else None, step)]
+    return block[:, samples]
 
 
 def seconds_of(recording: Recording, rate: float | None) -> Array:

@@ -1,5 +1,6 @@
 """Numbers that stay in their file until they are read: mapped into memory, or from a stream."""
 
+import mmap
 import os
 from typing import IO, Any
 
@@ -31,7 +32,10 @@ class Mapped:
         # what is mapped of a file that became shorter can't be refused: the process is ended
         if os.fstat(self._file.fileno()).st_size < self._end:
             raise EOFError("the file became shorter while it was read")
-        found: Block = np.asarray(self._numbers[key])
+        found: Block = np.array(self._numbers[key])
+        # pages that were read would stay with this process, up to all of the file
+        if hasattr(mmap, "MADV_DONTNEED"):
+            self._numbers._mmap.madvise(mmap.MADV_DONTNEED)  # type: ignore[attr-defined]
         return found
 
 

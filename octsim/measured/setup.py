@@ -10,7 +10,7 @@ from octsim.config.derive import calibrating
 from octsim.config.measured import Dispersion
 from octsim.config.models import Config
 from octsim.config.source import source_of
-from octsim.measured.axis import Axis, axis_of, samples_of, seconds_of, within
+from octsim.measured.axis import Axis, axis_of, samples_of, seconds_of, taken, within
 from octsim.measured.background import Mean, mean_of, source_by
 from octsim.measured.chain_error import reference_error
 from octsim.measured.dispersion import fitted, phase_over
@@ -69,8 +69,11 @@ class Setup(NamedTuple):
 
     def net(self, block: NDArray[np.generic]) -> Array:
         """Return the band of spectra as they are recorded, (T, S) to (T, K), without the dark."""
-        counts = np.asarray(block[:, self.band.sample], float)
-        return counts - self.dark.value if self.dark else counts
+        # a copy in any case, whatever the block is of
+        counts = taken(block, self.band.sample).astype(np.float64)
+        if self.dark is not None:
+            counts -= self.dark.value
+        return counts
 
 
 def setup_of(config: Config, recording: Recording) -> Setup:
@@ -122,7 +125,7 @@ def _first(
     recording: Recording, band: Axis, dark: Mean | None, given: float | None
 ) -> tuple[float, Array]:
     """Return the camera's full scale, and the first spectra that are not full, without the dark."""
-    first = np.asarray(recording.counts[:FIRST])[:, band.sample]
+    first = taken(np.asarray(recording.counts[:FIRST]), band.sample)
     full = full_scale_of(first, given)
     whole = saturated(first, full) == 0
     if not whole.any():

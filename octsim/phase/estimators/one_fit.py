@@ -132,7 +132,8 @@ def fitted(design: Design, net: Array, variance: Array) -> Fitted:
         Of each sample's counts.
     """
     parameters = net @ design.solver.T
-    left = net - parameters @ design.columns.T
+    left = parameters @ design.columns.T
+    np.subtract(net, left, out=left)
     covariance = (design.solver * variance) @ design.solver.T
     places = [design.cosine, design.cosine + design.step]
     phase, turn = _phase(parameters, design.cosine, design.cosine + design.step)
@@ -144,11 +145,15 @@ def fitted(design: Design, net: Array, variance: Array) -> Fitted:
     error = np.sqrt(np.maximum(np.einsum("ti,ij,tj->t", turn, own, turn), 0))
     amplitude = np.hypot(parameters[:, places[0]], parameters[:, places[1]])
     waves = slice(design.cosine, design.cosine + 2 * design.step)
-    oscillating = parameters[:, waves] @ design.columns[:, waves].T
+    # the power of what oscillates, by the products of the columns alone
+    gram = design.columns[:, waves].T @ design.columns[:, waves]
+    power = np.einsum("ti,ij,tj->t", parameters[:, waves], gram, parameters[:, waves])
     with np.errstate(divide="ignore", invalid="ignore"):
-        snr = 10 * np.log10((oscillating**2).sum(axis=1) / (2 * variance.mean()))
+        snr = 10 * np.log10(power / (2 * variance.mean()))
         visibility = amplitude / np.abs(parameters[:, 0])
-    return Fitted(phase, error, visibility, snr, np.sqrt((left**2).mean(axis=1)))
+    return Fitted(
+        phase, error, visibility, snr, np.sqrt(np.einsum("tk,tk->t", left, left) / net.shape[1])
+    )
 
 
 def residuals(design: Design, net: Array) -> Array:

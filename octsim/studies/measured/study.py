@@ -15,7 +15,7 @@ from octsim.config.units import format_length
 from octsim.datasets.files import flags
 from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.streams import Part, Stream, Streamed
-from octsim.measured.axis import axis_of, samples_of
+from octsim.measured.axis import axis_of, samples_of, taken
 from octsim.measured.full_scale import saturated
 from octsim.measured.open import opened_recording
 from octsim.measured.recording import RawForm
@@ -111,7 +111,7 @@ def _parts(config: Config, layout: Layout, setup: Setup) -> Iterator[Part]:
         for first in range(0, setup.spectra, together):
             raw = np.asarray(recording.counts[first : first + together])
             variables = {
-                "counts": (("time", "wavenumber"), np.ascontiguousarray(raw[:, setup.order])),
+                "counts": (("time", "wavenumber"), np.ascontiguousarray(taken(raw, setup.order))),
                 **_phases(setup, raw),
             }
             if first == 0:
