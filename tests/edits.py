@@ -32,6 +32,11 @@ EDITS: dict[str, tuple[Any, set[str], set[str]]] = {
     "spectrum.wavelength.min": ("660 nm", EVERYTHING, EVERYTHING - {"detections"}),
     "spectrum.wavelength.max": ("890 nm", EVERYTHING, EVERYTHING - {"detections"}),
     "spectrum.samples": (999, EVERYTHING, EVERYTHING - {"detections"}),
+    "spectrum.source": (
+        {"gaussian": {"centre": "775 nm", "fwhm": "150 nm"}},
+        EVERYTHING,
+        EVERYTHING - {"detections"},
+    ),
     "focus_scan.diameter": ("2.1 um", {"focus_scan", "figures"}, {"focus_scan", "figures"}),
     "focus_scan.focus": ({"num": 6}, {"focus_scan", "figures"}, {"focus_scan", "figures"}),
     "focus_law.diameters": ({"num": 4}, FITTED, {"focus_sweep", "focus_law", "figures"}),

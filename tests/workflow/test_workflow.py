@@ -67,6 +67,7 @@ def test_the_same_config_in_other_units_and_order_reruns_nothing(law: Checkout) 
 
 # of targets that are no part of a run
 OTHERS: dict[str, Any] = {
+    "measured": {"average": 2, "dispersion": {"a2": 1.0, "a3": 0.5}},
     "calibration": {
         "diameters": {"num": 9},
         "step": "0.2 nm",
