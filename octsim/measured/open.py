@@ -9,16 +9,16 @@ from zipfile import ZipFile
 
 from octsim.base.errors import DatasetError, FileError
 from octsim.base.files import reason
-from octsim.measured.arrays import array_recording, arrays_recording
-from octsim.measured.failures import said_in_a_line
-from octsim.measured.hdf5 import hdf5_recording
-from octsim.measured.matlab import matlab_recording
-from octsim.measured.netcdf import netcdf_recording
-from octsim.measured.raw_binary import raw_recording
+from octsim.measured.readers.arrays import array_recording, arrays_recording
+from octsim.measured.readers.failures import said_in_a_line
+from octsim.measured.readers.hdf5 import hdf5_recording
+from octsim.measured.readers.matlab import matlab_recording
+from octsim.measured.readers.netcdf import netcdf_recording
+from octsim.measured.readers.raw_binary import raw_recording
+from octsim.measured.readers.tdms import tdms_recording
+from octsim.measured.readers.text import text_recording
+from octsim.measured.readers.thorlabs import HEADER, thorlabs_recording
 from octsim.measured.recording import RawForm, Recording, Wanted
-from octsim.measured.tdms import tdms_recording
-from octsim.measured.text import text_recording
-from octsim.measured.thorlabs import HEADER, thorlabs_recording
 
 Reader = Callable[[Path, Wanted, ExitStack], Recording]
 _KINDS = "text, npy, npz, HDF5, MATLAB, netCDF, TDMS or .oct, or raw binary with measured.raw"
@@ -71,7 +71,7 @@ def opened_recording(
         How numbers stand, of raw binary.
     samples : int, optional
         K, if it is known, as of a file with the axis. Without it the axis in the file tells; see
-        `octsim.measured.sides.told` for what else does.
+        `octsim.measured.readers.sides.told` for what else does.
     x : int, optional
         Index, counted from 0, along the dimension that is neither time nor samples, where there
         is one.

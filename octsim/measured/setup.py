@@ -125,6 +125,10 @@ def _first(
     recording: Recording, band: Axis, dark: Mean | None, given: float | None
 ) -> tuple[float, Array]:
     """Return the camera's full scale, and the first spectra that are not full, without the dark."""
+    if not recording.counts.shape[0]:
+        raise ConfigError(
+            f"measured.spectra: {recording.name} holds wavelengths alone; give the file of spectra"
+        )
     first = taken(np.asarray(recording.counts[:FIRST]), band.sample)
     full = full_scale_of(first, given)
     whole = saturated(first, full) == 0

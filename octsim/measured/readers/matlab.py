@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from octsim.measured.blocks import Source
-from octsim.measured.failures import require_numbers
-from octsim.measured.inside import Container, Held, named_inside, recording_of
+from octsim.measured.readers.blocks import Source
+from octsim.measured.readers.failures import require_numbers
+from octsim.measured.readers.inside import Container, Held, named_inside, recording_of
+from octsim.measured.readers.zips import require_credible
 from octsim.measured.recording import Recording, Wanted
-from octsim.measured.zips import require_credible
 
 _TYPES = {
     "double": "f8", "single": "f4", "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2",

@@ -6,7 +6,7 @@ from typing import IO, Any
 
 import numpy as np
 
-from octsim.measured.blocks import Block, Key
+from octsim.measured.readers.blocks import Block, Key
 
 
 class Mapped:

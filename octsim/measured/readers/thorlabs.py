@@ -10,10 +10,10 @@ from zipfile import ZipInfo
 import numpy as np
 
 from octsim.base.errors import DatasetError, FileError
-from octsim.measured.blocks import Joined, Source
-from octsim.measured.inside import Container, Held, recording_of
+from octsim.measured.readers.blocks import Joined, Source
+from octsim.measured.readers.inside import Container, Held, recording_of
+from octsim.measured.readers.zips import Zip, array_in, member, opened_zip
 from octsim.measured.recording import Recording, Wanted
-from octsim.measured.zips import Zip, array_in, member, opened_zip
 
 HEADER = "header.xml"
 _MOST = 64_000_000
@@ -26,7 +26,7 @@ class _Raw(NamedTuple):
     """Raw spectra, as the header names them."""
 
     place: str
-    """Of the member, as it is in the zip."""
+    """Of the member in the zip."""
     samples: int
     each: int
     """Bytes of a number."""
@@ -84,13 +84,17 @@ def _said(raws: list[_Raw], members: dict[str, ZipInfo]) -> list[str]:
         said.append("spectra before and behind the scan, by Header.xml, are not read")
     beside = [name for name in _BESIDE if f"data/{name.casefold()}" in members]
     if beside:
-        said.append(f"{', '.join(beside)} are not read; wavelengths are not in this kind of file")
+        said.append(f"not read: {', '.join(beside)}; wavelengths are not in this kind of file")
     return said
 
 
 def _place(name: str) -> str:
-    """Return a name in the zip, or in the header, as both are compared."""
-    return name.strip().replace("\\", "/").lstrip("/").casefold()
+    """Return a name in the zip, or in the header, as both are compared: neither by case."""
+    return _plain(name).casefold()
+
+
+def _plain(name: str) -> str:
+    return " ".join(name.replace("\\", "/").lstrip("/").split())
 
 
 def _header(opened: Zip, info: ZipInfo, stack: ExitStack) -> ET.Element:
@@ -108,7 +112,7 @@ def _header(opened: Zip, info: ZipInfo, stack: ExitStack) -> ET.Element:
 
 def _raw(element: ET.Element, name: str) -> _Raw:
     """Return what an entry of the header says."""
-    place = _place(element.text or "")
+    place = _plain(element.text or "")
     attributes = {key.casefold(): value for key, value in element.attrib.items()}
 
     def whole(key: str, usual: str = "") -> int | None:
@@ -133,11 +137,11 @@ def _raw(element: ET.Element, name: str) -> _Raw:
 
 def _part(opened: Zip, members: dict[str, ZipInfo], raw: _Raw, stack: ExitStack) -> Source:
     """Return the spectra of one file in the zip."""
-    if raw.place not in members:
+    if _place(raw.place) not in members:
         raise DatasetError(
             f"{opened.path}: {raw.place} is named in Header.xml, and not there; copy the file anew"
         )
-    info = members[raw.place]
+    info = members[_place(raw.place)]
     row = raw.samples * raw.each
     count = raw.spectra if raw.spectra is not None else info.file_size // row
     if info.file_size != count * row or not count:

@@ -9,8 +9,9 @@ from typing import Any
 import netCDF4
 import numpy as np
 
-from octsim.measured.blocks import Block, Key, Source
-from octsim.measured.inside import Container, Held, recording_of
+from octsim.measured.readers.blocks import Block, Key, Source
+from octsim.measured.readers.inside import Container, Held, recording_of
+from octsim.measured.readers.netcdf_classic import require_whole
 from octsim.measured.recording import Recording, Wanted
 
 _MARKS = {"_FillValue", "missing_value", "valid_min", "valid_max", "valid_range"}
@@ -62,6 +63,7 @@ def _read_as(dtype: np.dtype[Any], attributes: set[str]) -> np.dtype[Any]:
 
 def netcdf_recording(path: Path, wanted: Wanted, stack: ExitStack) -> Recording:
     """Return the recording in a netCDF file, each block of which is read when it is asked for."""
+    require_whole(path)
     file = stack.enter_context(netCDF4.Dataset(str(path)))
     variables = dict(_variables(file, ""))
     held = [_held(name, variable) for name, variable in variables.items()]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.measured.names import is_counting, known, rising, spanned, with_unit
+from octsim.measured.readers.names import is_counting, known, rising, spanned, told_as, with_unit
 from octsim.measured.recording import Values
 from octsim.phase.measured_headings import Heading
 
@@ -89,9 +89,7 @@ def times_in(
         if heading is not None and heading.name == "time" and column.values is not None:
             heading = Heading("time", "s") if column.clock else heading
             times, unsaid = with_unit(column.values, heading, where)
-            return times, [
-                f"time is {column.heading!r}, {spanned(times.values)} {times.unit}{unsaid}"
-            ]
+            return times, [told_as(repr(column.heading), times, unsaid)]
     for column in reversed(columns):
         if column.values is not None and not column.heading:
             return _unnamed(column.values, column.clock, milliseconds)
@@ -104,5 +102,6 @@ def _unnamed(values: Array, clock: bool, milliseconds: bool) -> tuple[Values | N
         return None, ["the first column has no heading, and is not taken for times"]
     unit = "ms" if milliseconds and not clock else "s"
     what = "times of day" if clock else f"times in {unit}"
-    said = f"a column without a heading is taken for {what}: {spanned(values)}"
+    sure = "" if clock or milliseconds else "warning: "
+    said = f"{sure}a column without a heading is taken for {what}: {spanned(values)}"
     return Values(values, "time", unit), [said]

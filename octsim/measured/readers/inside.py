@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from octsim.base.errors import DatasetError
-from octsim.measured.blocks import Blocks, Sides, Source
-from octsim.measured.failures import is_numbers, require_numbers, said_in_a_line, sizes
-from octsim.measured.names import AXES, known, last_of, spanned, with_unit
+from octsim.measured.readers.blocks import Blocks, Sides, Source
+from octsim.measured.readers.failures import is_numbers, require_numbers, said_in_a_line, sizes
+from octsim.measured.readers.names import AXES, known, last_of, told_as, with_unit
+from octsim.measured.readers.sides import Signs, told
 from octsim.measured.recording import Recording, Values, Wanted
-from octsim.measured.sides import Signs, told
 from octsim.phase.measured_headings import Heading, listed
 
 _SPECTRA = {
@@ -225,5 +225,5 @@ def _values(
             raise
         notes.append(f"not read: {error}")
         return None
-    notes.append(f"{values.name} is {one.name}, {spanned(found)} {values.unit}{unsaid}")
+    notes.append(told_as(one.name, values, unsaid))
     return values

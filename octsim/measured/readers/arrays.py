@@ -7,11 +7,11 @@ from typing import IO, Any, NamedTuple
 import numpy as np
 
 from octsim.base.errors import DatasetError, FileError
-from octsim.measured.blocks import Source, Turned
-from octsim.measured.inside import Container, Held, recording_of
-from octsim.measured.on_disk import Mapped
+from octsim.measured.readers.blocks import Source, Turned
+from octsim.measured.readers.inside import Container, Held, recording_of
+from octsim.measured.readers.on_disk import Mapped
+from octsim.measured.readers.zips import array_in, member, opened_zip
 from octsim.measured.recording import Recording, Wanted
-from octsim.measured.zips import array_in, member, opened_zip
 
 _SUFFIX = ".npy"
 

@@ -18,8 +18,8 @@ FEWEST = 8
 _ALIASES = {
     name: re.compile(rf"(?:{alias})(?![^\W\d_])(.*)", re.IGNORECASE)
     for name, alias in {
-        "wavelength": "wave[ _-]?lengths?|lambdas?|λ|wls?|lam",
-        "wavenumber": "wave[ _-]?numbers?|(?-i:k)",
+        "wavelength": "wave[ _-]?lengths?|lambdas?|λ|wls?|lam|wellenlängen?",
+        "wavenumber": "wave[ _-]?numbers?|wellenzahl(?:en)?|(?-i:k)",
         "time": "time[ _-]?stamps?|elapsed[ _-]?time|times?|zeit|(?-i:t)",
     }.items()
 }
@@ -156,6 +156,21 @@ def spanned(values: Array) -> str:
     return f"{values[0]:.6g} to {values[-1]:.6g}" if values.size else "nothing"
 
 
+def told_as(what: str, values: Values, unsaid: str) -> str:
+    """Return the line that says what was taken for an axis or for times.
+
+    Parameters
+    ----------
+    what : str
+        Where they stand.
+    values : Values
+    unsaid : str
+        Of `with_unit`; what had to be guessed is said as a warning.
+    """
+    line = f"{values.name} is {what}, {spanned(values.values)} {values.unit}{unsaid}"
+    return f"warning: {line}" if unsaid else line
+
+
 def is_counting(values: Array) -> bool:
     """Return whether numbers only count: 0, 1, 2, or 1, 2, 3."""
     return bool(
@@ -193,5 +208,5 @@ def times_of(headings: Sequence[str]) -> tuple[Values | None, str]:
     if unit != "" or values.size < 2 or is_counting(values) or not rising(values):
         return None, "headings are numbers, and not taken for times"
     return Values(values, "time", "s"), (
-        f"headings are taken for times, as they rise, and to be in s: {spanned(values)}"
+        f"warning: headings are taken for times in s, as they rise: {spanned(values)}"
     )

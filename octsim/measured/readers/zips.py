@@ -9,8 +9,8 @@ from typing import IO, Any, NamedTuple
 import numpy as np
 
 from octsim.base.errors import FileError
-from octsim.measured.blocks import Source
-from octsim.measured.on_disk import Mapped, Streamed
+from octsim.measured.readers.blocks import Source
+from octsim.measured.readers.on_disk import Mapped, Streamed
 
 _MOST = 50_000_000_000
 """Bytes that are unpacked of one member."""

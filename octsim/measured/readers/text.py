@@ -1,26 +1,29 @@
 """Recordings in text: tables of any program, and what OceanView and ThorSpectra write."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from octsim.base.errors import DatasetError
 from octsim.config.units import find_unit
-from octsim.measured.blocks import Blocks
-from octsim.measured.inside import described, empty
-from octsim.measured.names import is_counting, plausible, spanned, times_of, unit_of
+from octsim.measured.readers.blocks import Blocks
+from octsim.measured.readers.inside import described, empty
+from octsim.measured.readers.names import is_counting, plausible, times_of, told_as, unit_of
+from octsim.measured.readers.sides import Signs, told
+from octsim.measured.readers.text_form import find_form
+from octsim.measured.readers.text_lines import read_text
+from octsim.measured.readers.text_numbers import Table, read_numbers
+from octsim.measured.readers.text_table import Laid, Read, both, columns, laid_by_headings, rows
 from octsim.measured.recording import Recording, Values, Wanted
-from octsim.measured.sides import Signs, told
-from octsim.measured.text_form import find_form
-from octsim.measured.text_lines import read_text
-from octsim.measured.text_numbers import Table, read_numbers
-from octsim.measured.text_table import Laid, Read, both, columns, laid_by_headings, rows
 from octsim.phase.measured_headings import Heading
 
 _AXIS = re.compile(
     r"#?\s*x[ _-]?axis[ _-]?(?:unit|mode)s?\s*[:;,=\t]\s*(.+?)[\s;,]*", re.IGNORECASE
 )
 _OCEANVIEW = re.compile(r">{3,}\s*begin", re.IGNORECASE)
+_SECTION = re.compile(r"\[Data\]", re.IGNORECASE)
+_END = re.compile(rb"^\[End", re.IGNORECASE | re.MULTILINE)
+_PIXELS = re.compile(r"Number of Pixels in Spectrum:\s*(\d{1,9})", re.ASCII)
 _MODES = {
     "wavelengths": Heading("wavelength", "nm"), "wavelength": Heading("wavelength", "nm"),
     "wavenumbers": Heading("wavenumber", "1/cm"), "wavenumber": Heading("wavenumber", "1/cm"),
@@ -32,8 +35,8 @@ def text_recording(path: Path, wanted: Wanted) -> Recording:
     """Return the recording in a text, which is read whole.
 
     Headings tell what is what; else what stands above or beside the counts and may be wavelengths;
-    else `octsim.measured.sides.told`. Counts are real numbers, as a text does not say of how many
-    bits they are.
+    else `octsim.measured.readers.sides.told`. Counts are real numbers, as a text does not say of how
+    many bits they are.
 
     Raises
     ------
@@ -47,16 +50,27 @@ def text_recording(path: Path, wanted: Wanted) -> Recording:
     read = Read(path, form, table, _axis(path, form.header), ocean)
     laid = laid_by_headings(read, wanted.samples) or _laid_by_numbers(read, wanted.samples)
     written = () if text.encoding == "UTF-8" else (f"it is written in {text.encoding}",)
-    said = (*written, form.said)
+    samples = laid.counts.shape[1] if laid else max(table.numbers.shape)
+    said = (*written, form.said, *_doubts(text.data, form.header, samples))
     if laid is None:
         return _untold(read, wanted, said)
     if not laid.counts.shape[0] and laid.axis is not None and wanted.samples is None:
         return empty(laid.axis, str(path), (*said, *laid.notes))
-    samples = laid.counts.shape[1]
     found = told(laid.counts, Signs(1, 0, samples), wanted.samples, wanted.x, str(path))
     counts = Blocks(found.source, found.sides, str(path))
     what = described(counts.shape, laid.by)
     return Recording(counts, laid.axis, laid.time, str(path), (*said, what, *laid.notes))
+
+
+def _doubts(data: bytes, header: Sequence[str], samples: int) -> Iterator[str]:
+    """Return what says that a text may be cut short, as nothing in it contradicts that."""
+    if not data.endswith(b"\n"):
+        yield "warning: its last line has no end, and may be cut short"
+    if any(_SECTION.match(line) for line in header) and not _END.search(data[-4096:]):
+        yield "warning: [EndOfFile] does not stand at its end, and the file may be cut short"
+    pixels = [int(match[1]) for line in header if (match := _PIXELS.fullmatch(line.strip()))]
+    if pixels and pixels[-1] != samples:
+        yield f"warning: it has {samples} samples, and its header speaks of {pixels[-1]} pixels"
 
 
 def _axis(path: Path, header: Sequence[str]) -> Heading | None:
@@ -118,29 +132,23 @@ def _over_rows(read: Read) -> Laid | None:
         return None
     axis = Values(first[skipped:], "wavelength", unit)
     below = Table(read.table.lead[1:], read.numbers[1:])
-    said = f"row {read.form.row} is taken for wavelengths in {unit}, {spanned(axis.values)}"
+    what = f"row {read.form.row}"
+    said = told_as(what, axis, f"; nothing says so, but it may be of wavelengths in {unit}")
     return rows(read._replace(table=below), skipped + read.form.lead, axis, "the first row", said)
 
 
 def _beside(read: Read) -> Laid | None:
     """Return the spectra as columns, if the first one may be of wavelengths; None if it may not."""
     first = read.numbers[:, 0]
-    unit = plausible(first)
-    if unit is not None:
-        heading = Heading("wavelength", unit)
-        found = columns(read, 0, heading, "the first column, which is taken for wavelengths")
-    else:
-        unit = plausible(first[1:])
-        if unit is None or read.form.top:
+    if not plausible(first):
+        if read.form.top or not plausible(first[1:]):
             return None
-        above = tuple(f"{value:.17g}" for value in read.numbers[0])
-        below = read._replace(
-            form=read.form._replace(top=above, top_row=read.form.row),
-            table=Table([], read.numbers[1:]),
-        )
-        by = "the first column, which is taken for wavelengths"
-        found = columns(below, 0, Heading("wavelength", unit), by)
-    return found
+        # the first row is of what the spectra are of, as their times
+        top = tuple(f"{value:.17g}" for value in read.numbers[0])
+        form = read.form._replace(top=top, top_row=read.form.row)
+        read = read._replace(form=form, table=Table([], read.numbers[1:]))
+    by = "the first column, which may be of wavelengths"
+    return columns(read, 0, Heading("wavelength", None), by)
 
 
 def _untold(read: Read, wanted: Wanted, said: Sequence[str]) -> Recording:

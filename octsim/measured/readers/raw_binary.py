@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 
 from octsim.base.errors import DatasetError
-from octsim.measured.failures import sizes
-from octsim.measured.inside import Container, Held, recording_of
-from octsim.measured.on_disk import Mapped
+from octsim.measured.readers.failures import sizes
+from octsim.measured.readers.inside import Container, Held, recording_of
+from octsim.measured.readers.on_disk import Mapped
 from octsim.measured.recording import RawForm, Recording, Wanted
 
 _TYPES = (

@@ -1,5 +1,6 @@
 """The numbers of a text file, read at once; and where the first cell is that is none."""
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -8,11 +9,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.base.errors import DatasetError
-from octsim.measured.text_form import Form
-from octsim.measured.text_lines import BLANKS, Text, cut, is_empty, is_note, is_number, lines
+from octsim.measured.readers.text_form import Form
+from octsim.measured.readers.text_lines import (
+    BLANKS,
+    Text,
+    cut,
+    is_empty,
+    is_note,
+    is_number,
+    lines,
+)
 from octsim.phase.measured_tables import shown
 
 Array = NDArray[np.float64]
+
+
+_POINTED = re.compile(r"[-+]?[\d., ]+", re.ASCII)
 
 
 class Table(NamedTuple):
@@ -97,7 +109,7 @@ def _wrong(place: int, cell: str, point: str) -> str:
     if not cell:
         return f"cell {place + 1} is empty; give a number, or leave the row out"
     remedy = "give a number, or leave the row out"
-    if "," in cell or (point == "," and "." in cell):
+    if _POINTED.fullmatch(cell):
         remedy = f"write a decimal {'comma' if point == ',' else 'point'}, as the cells before it"
         remedy += ", and nothing between thousands"
     elif "#" in cell:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from octsim.base.errors import DatasetError
 from octsim.config.units import find_unit
-from octsim.measured.names import (
+from octsim.measured.readers.names import (
     AXES,
     FEWEST,
     counts_samples,
@@ -17,20 +17,21 @@ from octsim.measured.names import (
     known,
     plausible,
     rising,
-    spanned,
     times_of,
+    told_as,
     unit_of,
     with_unit,
 )
+from octsim.measured.readers.text_form import Form
+from octsim.measured.readers.text_lines import is_number
+from octsim.measured.readers.text_numbers import Table
+from octsim.measured.readers.text_stamps import times_in
 from octsim.measured.recording import Values
-from octsim.measured.text_form import Form
-from octsim.measured.text_lines import is_number
-from octsim.measured.text_numbers import Table
-from octsim.measured.text_stamps import times_in
 from octsim.phase.measured_headings import Heading, listed, of_errors, parse
 from octsim.phase.measured_tables import shown
 
 Array = NDArray[np.float64]
+_STRAY = re.compile(r"[-+.,]?\d")
 _CELL = re.compile(r"([-+\d.,eE]+)\s*([^\W\d_]*)")
 
 
@@ -163,8 +164,8 @@ def _below(read: Read, tail: _Tail, heading: Heading) -> Laid:
     """Return spectra that are rows below their axis."""
     where = f"{read.path}, row {read.form.top_row}"
     axis, unsaid = with_unit(tail.values, heading, where)
-    said = f"{axis.name} is row {read.form.top_row}, {spanned(axis.values)} {axis.unit}{unsaid}"
-    return rows(read, tail.first, axis, f"row {read.form.top_row}", said)
+    what = f"row {read.form.top_row}"
+    return rows(read, tail.first, axis, what, told_as(what, axis, unsaid))
 
 
 def rows(read: Read, first: int, axis: Values | None, by: str, *said: str) -> Laid:
@@ -182,7 +183,11 @@ def rows(read: Read, first: int, axis: Values | None, by: str, *said: str) -> La
         What is to be said.
     """
     own = first - read.form.lead
-    headings = [] if by == "the first row" else read.form.top[:first]
+    # a heading of the axis is of what stands beside it, not of what stands below
+    headings = [
+        "" if (one := known(text)) and one.name in AXES else text
+        for text in ([] if by == "the first row" else read.form.top[:first])
+    ]
     where = f"{read.path}, row {read.form.top_row}"
     before = read.numbers[:, :own]
     time, notes = times_in(headings, read.table.lead, before, read.milliseconds, where)
@@ -224,7 +229,7 @@ def columns(read: Read, place: int, heading: Heading, by: str) -> Laid:
     where = f"{read.path}, row {read.form.top_row}"
     axis, unsaid = with_unit(read.numbers[:, place - lead], heading, where)
     what = f"column {place + 1}" + f", {top[place]!r}" * bool(top[place])
-    notes = [f"{axis.name} is {what}, {spanned(axis.values)} {axis.unit}{unsaid}"]
+    notes = [told_as(what, axis, unsaid)]
     kept = []
     for other in range(read.form.columns):
         if other < lead or (
@@ -234,7 +239,8 @@ def columns(read: Read, place: int, heading: Heading, by: str) -> Laid:
         elif other != place:
             kept.append(other)
     _refuse_others(read, [top[other] for other in kept])
-    time, said = times_of([top[other] for other in kept])
+    named = not top[place] or known(top[place])
+    time, said = times_of([top[other] for other in kept]) if named else (None, "")
     counts = read.numbers[:, [other - lead for other in kept]].T
     return Laid(counts, axis, time, by, (*notes, *([said] if said else [])))
 
@@ -252,14 +258,14 @@ def _refuse_others(read: Read, headings: list[str]) -> None:
 
 def _refuse_stray(read: Read, tail: _Tail | None) -> None:
     """Refuse a row above the numbers that is rather one of them, with a cell that is none."""
-    if tail is None or is_counting(tail.values) or (tail.values.size > 1 and rising(tail.values)):
+    given = read.form.top[0]
+    if tail is None or (given and not _STRAY.match(given)):
         return
-    if all(counts_samples(text) for text in read.form.top[: tail.first]):
+    if not given and (is_counting(tail.values) or (tail.values.size > 1 and rising(tail.values))):
         return
     unit = find_unit(tail.unit) if tail.unit else None
     if unit is not None and unit.dimension == "time":
         return
-    given = read.form.top[0]
     problem = f"cell 1 is {shown(given)}, which is no number" if given else "a cell is missing"
     raise DatasetError(
         f"{read.path}, row {read.form.top_row}: {problem}, among others that are; mend it, or head "

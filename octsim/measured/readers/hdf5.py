@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from octsim.base.errors import FileError
-from octsim.measured.blocks import Source, Turned
-from octsim.measured.inside import Container, Held, recording_of
+from octsim.measured.readers.blocks import Source, Turned
+from octsim.measured.readers.inside import Container, Held, recording_of
 from octsim.measured.recording import Recording, Wanted
 
 _OF_MATLAB = "MATLAB_class"
@@ -51,10 +51,9 @@ def _held(name: str, dataset: Any, matlab: bool, h5py: Any) -> Held:
         return Held(name, shape, None, kind=kind)
     if matlab:  # which counts dimensions in the opposite order, and has no scales
         return Held(name, shape[::-1], dataset.dtype, _unit(dataset))
-    if dataset.is_scale and len(shape) == 1:
+    if _text(dataset.attrs.get("CLASS")) == "DIMENSION_SCALE" and len(shape) == 1:
         return Held(name, shape, dataset.dtype, _unit(dataset), (name,))
-    dims = tuple(_dim(dim) for dim in dataset.dims)
-    return Held(name, shape, dataset.dtype, _unit(dataset), dims)
+    return Held(name, shape, dataset.dtype, _unit(dataset), _dims(dataset))
 
 
 def _kind(dataset: Any, h5py: Any) -> str:
@@ -92,6 +91,17 @@ def _unit(dataset: Any) -> str:
     return _text(dataset.attrs[found[0]]) if found else ""
 
 
-def _dim(dim: Any) -> str:
-    """Return the name of a dimension: of the scale that is attached to it, or its label."""
-    return str(dim[0].name) if len(dim) else str(dim.label)
+def _dims(dataset: Any) -> tuple[str, ...]:
+    """Return the names of dimensions: of the scale that is attached to each, or its label.
+
+    They are read of their attributes, as the library's own functions end the process where one of
+    these is damaged.
+    """
+    lists = [list(one) for one in dataset.attrs.get("DIMENSION_LIST", [])]
+    labels = [_text(one) for one in dataset.attrs.get("DIMENSION_LABELS", [])]
+    names = []
+    for place in range(len(dataset.shape)):
+        scales = lists[place] if place < len(lists) else []
+        label = labels[place] if place < len(labels) else ""
+        names.append(str(dataset.file[scales[0]].name) if scales else label)
+    return tuple(names)

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from octsim.base.errors import DatasetError
-from octsim.measured.names import FEWEST, known
-from octsim.measured.text_lines import (
+from octsim.measured.readers.names import AXES, FEWEST, known
+from octsim.measured.readers.text_lines import (
     BLANKS,
     SEPARATORS,
     Line,
@@ -48,14 +48,16 @@ class Form(NamedTuple):
     """The headings, one for each column; none where there are none."""
     top_row: int
     header: tuple[str, ...]
-    """The lines above all that."""
+    """The other lines above."""
 
     @property
     def said(self) -> str:
         """The form in words."""
         marks = ", with decimal commas" if self.point == "," else ""
-        above = f"; the {len(self.header)} lines above are not read" if self.header else ""
-        return f"cells are separated by {_WORDS[self.separator]}{marks}{above}"
+        lines = "line is" if len(self.header) == 1 else "lines are"
+        above = f"; {len(self.header)} {lines} above, and not read" if self.header else ""
+        between = f"cells are separated by {_WORDS[self.separator]}{marks}"
+        return f"{between if self.columns > 1 else 'each row has one cell'}{above}"
 
 
 class _Shape(NamedTuple):
@@ -149,7 +151,7 @@ def _form(
             if len(first.cells) != count and not bare:
                 several = min(len(first.cells), count) > 1 and first.lead == then.lead == 0
                 ragged = (len(first.cells), count) if several else ragged
-            elif best is None or count > best[0]:
+            elif best is None or count - then.lead > best[0] - best[4]:
                 best = count, separator, point, first, then.lead
     if best is not None:
         return _of(path, text, line, best, header, end)
@@ -177,18 +179,19 @@ def _of(
         top = ("", *first.cells)
     elif first.lead > 0 and _heads(first, lead):
         top = tuple(first.cells)
+        if not any(known(cell) for cell in top[: first.lead]) and any(top[: first.lead]):
+            _above(path, [*above, line], separator, count)  # which refuses it below headings
     if top:
         stop = text.data.find(b"\n", line.start, end)
         start, row = (end if stop < 0 else stop + 1), line.row + 1
-    elif above:
-        top = _headings(path, above[-1], separator, count)
-        top_row = above[-1].row
-        above = above[:-1] if top else above
+        lead = lead if text.data[start:end].strip() else 0
+    else:
+        top, top_row = _above(path, above, separator, count) or (top, top_row)
     if separator != ",":
         point = _point(text.data, start, end, point)
     return Form(
         separator, point, count, lead, start, row, end, top, top_row,
-        tuple(one.text for one in above),
+        tuple(one.text for one in above if one.row != top_row),
     )  # fmt: skip
 
 
@@ -197,16 +200,49 @@ def _heads(first: _Shape, lead: int) -> bool:
     return first.lead > lead or any(known(cell) for cell in first.cells[: first.lead])
 
 
-def _headings(path: Path, line: Line, separator: str, count: int) -> tuple[str, ...]:
-    """Return the headings in the line above the numbers, as many as there are columns."""
+def _above(
+    path: Path, above: list[Line], separator: str, count: int
+) -> tuple[tuple[str, ...], int] | None:
+    """Return the headings above the numbers and their row: a line, or a note below the last one.
+
+    Up to three lines are looked at, as names, units and comments may stand in one each.
+    """
+    texts = [line for line in above if not is_note(line.text)][-3:]
+    notes = [line for line in above if is_note(line.text) and [line] > texts[-1:]]
+    likely = [*texts[-1:], *reversed(notes)]
+    found = [(_headings(path, line, separator, count), line) for line in likely]
+    found += [(_cells(line, separator, count), line) for line in reversed(texts[:-1])]
+    named = [pair for pair in found if any(_is_axis(cell) for cell in pair[0])]
+    chosen = next(iter(named or [pair for pair in found[: len(likely)] if pair[0]]), None)
+    if chosen is None:
+        return None
+    for cells, line in found:
+        if line > chosen[1] and any(is_number(cell, ".") for cell in cells):
+            raise DatasetError(
+                f"{path}, row {line.row}: {shown(line.text)} given, between the headings and the "
+                "numbers, where a cell is no number; mend it, or leave the row out"
+            )
+    return chosen[0], chosen[1].row
+
+
+def _is_axis(cell: str) -> bool:
+    heading = known(cell)
+    return heading is not None and heading.name in AXES
+
+
+def _cells(line: Line, separator: str, count: int) -> tuple[str, ...]:
+    """Return as many headings as there are columns, if they stand in a line; none else."""
     text = line.text.lstrip("#" if separator == "\t" else " #")
-    every = [cut_headings(text, one) for one in (separator, *SEPARATORS)]
-    whole = next((cells for cells in every if len(cells) == count), None)
-    if whole is not None:
-        return tuple(whole)
-    cells = every[0]
-    if not cells or known(cells[0]) is None:
-        return ()
+    every = (cut_headings(text, one) for one in (separator, *SEPARATORS))
+    return tuple(next((cells for cells in every if len(cells) == count), ()))
+
+
+def _headings(path: Path, line: Line, separator: str, count: int) -> tuple[str, ...]:
+    """Return the headings in a line, of which one or two may stand for all columns."""
+    whole = _cells(line, separator, count)
+    cells = cut_headings(line.text.lstrip(" #"), separator)
+    if whole or not cells or not _is_axis(cells[0]):
+        return whole
     if len(cells) > min(2, count):
         raise DatasetError(
             f"{path}, row {line.row}: {len(cells)} headings over {count} columns of numbers; give "

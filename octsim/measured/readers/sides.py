@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 from octsim.base.errors import DatasetError
-from octsim.measured.blocks import Folded, Sides, Source
-from octsim.measured.failures import sizes
+from octsim.measured.readers.blocks import Folded, Sides, Source
+from octsim.measured.readers.failures import sizes
 
 CAMERAS = frozenset({512, 1024, 2048, 3648, 4096, 8192})
 """How many pixels the lines of cameras have, most of them."""
@@ -109,7 +109,7 @@ def _of_a_row(
                 f"{name}: holds {count} numbers in a row, which are no spectra of {length} "
                 "samples; give the axis of this spectrometer, or whole spectra"
             )
-        return Told(Folded(source, place, length), Sides(1, 0, {}), "the axis' length")
+        return Told(Folded(source, place, length), Sides(1, 0, {}), "the length of the axis")
     held = {other: 0 for other in range(len(source.shape)) if other != place}
     return Told(source, Sides(place, None, held), "its only dimension")
 
@@ -123,14 +123,14 @@ def _along(
     if length is not None:
         fits = [place for place in places if shape[place] == length and place != signs.time]
         if len(fits) == 1:
-            return fits[0], "the axis' length"
+            return fits[0], "the length of the axis"
         if not fits:
             raise DatasetError(
                 f"{name}: is {sizes(shape)}, and the axis has {length} samples, as no dimension "
                 "has; give the axis of this spectrometer"
             )
         if signs.rows and fits[-1] == len(shape) - 1:
-            return fits[-1], "standing last, as samples do in files of this kind"
+            return fits[-1], "standing last, as they do in a file of this kind"
         raise DatasetError(
             f"{name}: is {sizes(shape)}, and more than one dimension is as long as the axis, "
             f"{length}; leave a spectrum out, or name the dimensions in the file"
@@ -139,7 +139,7 @@ def _along(
     if len(beside) == 1:
         return beside[0], "not being the time"
     if signs.rows:
-        return len(shape) - 1, "standing last, as samples do in files of this kind"
+        return len(shape) - 1, "standing last, as they do in a file of this kind"
     usual = [place for place in places if shape[place] in CAMERAS]
     if usual == [len(shape) - 1]:
         return usual[0], f"standing last, and {shape[-1]} being as many as lines of cameras have"

@@ -1,0 +1,214 @@
+"""What stands in a text is told by its headings, by its numbers, and else not at all."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from recordings import ocean_single, thor_spectra
+
+from octsim.base.errors import DatasetError
+from octsim.measured.open import opened_recording
+
+NM = 800.0 + np.arange(12)
+COUNTS = 100.0 * np.arange(1, 4)[:, np.newaxis] + np.arange(12) * 7 % 5
+AXIS = ",".join(f"{one:g}" for one in NM)
+NUMBERED = ",".join(map(str, range(12)))
+PHASES = [0.0, 0.1, 0.2]
+
+
+def columns(separator: str = ",", form: str = "{:g}") -> str:
+    rows = zip(NM, COUNTS.T, strict=True)
+    return "".join(
+        separator.join([form.format(nm), *(f"{one:g}" for one in row)]) + "\n" for nm, row in rows
+    )
+
+
+def rows(*lead: str, counts: Any = COUNTS) -> str:
+    rows = [",".join(f"{one:g}" for one in row) for row in counts]
+    whole = [f"{first},{row}" for first, row in zip(lead, rows, strict=True)] if lead else rows
+    return "".join(f"{row}\n" for row in whole)
+
+
+Seen = tuple[str | None, str | None, list[float] | None]
+TABLES: Mapping[str, tuple[str, Seen]] = {
+    # axis, unit of it, times in the file's unit
+    "a short name": ("lambda,a,b,c\n" + columns(), ("wavelength", "nm", None)),
+    "a name in German": ("Wellenlänge (nm),a,b,c\n" + columns(), ("wavelength", "nm", None)),
+    "a unit alone": ("nm,a,b,c\n" + columns(), ("wavelength", "nm", None)),
+    "a unit in a row of its own": (
+        "Wavelength,A,B,C\nnm,counts,counts,counts\n" + columns(),
+        ("wavelength", "nm", None),
+    ),
+    "names, units, comments": (
+        "Wavelength\tA\tB\tC\nnm\tcounts\tcounts\tcounts\n\tone\ttwo\tthree\n" + columns("\t"),
+        ("wavelength", "nm", None),
+    ),
+    "one heading for all": ("Wavelength (nm),counts\n" + columns(), ("wavelength", "nm", None)),
+    "wavenumbers": ("k (rad/um),a,b,c\n" + columns(), ("wavenumber", "rad/um", None)),
+    "of waves in a cm": ("Wavenumber [1/cm],a,b,c\n" + columns(), ("wavenumber", "1/cm", None)),
+    "of numpy": ("# wavelength (nm) a b c\n" + columns(" ", "{:.18e}"), ("wavelength", "nm", None)),
+    "without headings": (columns(), ("wavelength", "nm", None)),
+    "without headings, um": (columns(form="{:.0f}e-3"), ("wavelength", "um", None)),
+    "a setting above": ("Camera,Basler\nGain,5,7,9\n" + columns(), ("wavelength", "nm", None)),
+    "two settings above": ("Gain,5\n3,2,1,0,7\nROI\n" + columns(), ("wavelength", "nm", None)),
+    "of a spreadsheet": (
+        "sep=;\nWavelength (nm);1;2;3\n" + columns(";"),
+        ("wavelength", "nm", None),
+    ),
+    "ends of an old Mac": (
+        ("nm,a,b,c\n" + columns()).replace("\n", "\r"),
+        ("wavelength", "nm", None),
+    ),
+    "blanks at the ends": (
+        ("nm\ta\tb\tc\n" + columns("\t")).replace("\n", "\t \n"),
+        ("wavelength", "nm", None),
+    ),
+    "headed by counts": ("wavelength (nm),1,2,3\n" + columns(), ("wavelength", "nm", None)),
+    "headed by times": (
+        "wavelength (nm),t = 1 ms,t = 3 ms,t = 4 ms\n" + columns(),
+        ("wavelength", "nm", [1, 3, 4]),
+    ),
+    "headed by numbers that rise": (
+        "wavelength (nm),0,0.1,0.2\n" + columns(),
+        ("wavelength", "nm", PHASES),
+    ),
+    "headed by others": (
+        "wavelength (nm),5 mm,6 mm,7 mm\n" + columns(),
+        ("wavelength", "nm", None),
+    ),
+    "rows with units": (
+        "t," + ",".join(f"{one:g} nm" for one in NM) + "\n" + rows("0", "0.1", "0.2"),
+        ("wavelength", "nm", PHASES),
+    ),
+    "rows in um": (
+        "t [ms]," + ",".join(f"{one / 1000:g}" for one in NM) + "\n" + rows("0", "0.1", "0.2"),
+        ("wavelength", "um", PHASES),
+    ),
+    "rows, the axis named": (
+        f"wavelength (nm),{AXIS}\n" + rows("0", "0.1", "0.2"),
+        ("wavelength", "nm", PHASES),
+    ),
+    "rows of pandas": (f",{AXIS}\n" + rows("0", "1", "2"), ("wavelength", "nm", None)),
+    "rows with names": (f"name,{AXIS}\n" + rows("a", "b", "c"), ("wavelength", "nm", None)),
+    "rows with a place and a time": (
+        f"frame,time (ms),{AXIS}\n" + rows("7,0", "8,0.1", "9,0.2"),
+        ("wavelength", "nm", PHASES),
+    ),
+    "rows by times of day": (
+        f"when,{AXIS}\n" + rows("10:00:00", "10:00:00.1", "10:00:00.2"),
+        ("wavelength", "nm", [36000, 36000.1, 36000.2]),
+    ),
+    "rows over midnight": (
+        f"time,{AXIS}\n"
+        + rows("2024-05-01 23:59:59.9", "2024-05-02 00:00:00", "2024-05-02T00:00:00.1Z"),
+        ("wavelength", "nm", [86399.9, 86400, 86400.1]),
+    ),
+    "rows over midnight, no day": (
+        f"time,{AXIS}\n" + rows("23:59:59", "0:00:00", "0:00:01"),
+        ("wavelength", "nm", [86399, 86400, 86401]),
+    ),
+    "rows over pixels": (f"time (s),{NUMBERED}\n" + rows("0", "0.1", "0.2"), (None, None, PHASES)),
+    "rows of named pixels": (
+        "time (s)," + ",".join(f"p{one}" for one in range(12)) + "\n" + rows("0", "0.1", "0.2"),
+        (None, None, PHASES),
+    ),
+}
+
+
+def read(path: Path, text: str, **asked: Any) -> tuple[Any, Seen, tuple[str, ...]]:
+    path.write_text(text, encoding="utf-8")
+    with opened_recording(path, **asked) as found:
+        axis, time = found.axis, found.time
+        seen = (axis.name, axis.unit) if axis else (None, None)
+        times = time.values.tolist() if time else None
+        return found.counts[:], (*seen, times), found.understood
+
+
+@pytest.mark.parametrize("kind", TABLES)
+def test_a_table_is_understood(kind: str, tmp_path: Path) -> None:
+    text, (name, unit, times) = TABLES[kind]
+    counts, seen, _ = read(tmp_path / "table", text)
+    np.testing.assert_array_equal(counts, COUNTS)
+    assert seen[:2] == (name, unit)
+    assert seen[2] == (None if times is None else pytest.approx(times))
+
+
+@pytest.mark.parametrize("kind", ["headed by numbers that rise", "rows of pandas", "a short name"])
+def test_what_is_guessed_is_a_warning(kind: str, tmp_path: Path) -> None:
+    understood = read(tmp_path / "table", TABLES[kind][0])[2]
+    assert any(line.startswith("warning: ") for line in understood)
+
+
+@pytest.mark.parametrize("kind", ["a unit alone", "headed by times", "rows with names"])
+def test_rows_and_columns_are_as_many_as_the_samples_that_are_given(
+    kind: str, tmp_path: Path
+) -> None:
+    np.testing.assert_array_equal(read(tmp_path / "a", TABLES[kind][0], samples=12)[0], COUNTS)
+    with pytest.raises(DatasetError, match=r"12.* 3 .*give the axis of this spectrometer"):
+        read(tmp_path / "b", TABLES[kind][0], samples=3)
+
+
+def test_numbers_alone_are_told_by_the_samples_that_are_given(tmp_path: Path) -> None:
+    turned = "".join(line.partition(",")[2] for line in columns().splitlines(keepends=True))
+    for text in (rows(), turned):
+        counts, seen, _ = read(tmp_path / "table", text, samples=12)
+        np.testing.assert_array_equal(counts, COUNTS)
+        assert seen == (None, None, None)
+        with pytest.raises(DatasetError, match="nothing says which of"):
+            read(tmp_path / "table", text)
+
+
+def test_a_first_row_and_column_that_both_may_be_the_axis_are_told_by_the_samples(
+    tmp_path: Path,
+) -> None:
+    square = np.add.outer(800.0 + np.arange(9), 10.0 * np.arange(14))
+    text = "".join(",".join(f"{one:g}" for one in row) + "\n" for row in square)
+    counts, seen, _ = read(tmp_path / "table", text, samples=9)
+    np.testing.assert_array_equal(counts, square[:, 1:].T)
+    assert seen[0] == "wavelength"
+    counts, _, _ = read(tmp_path / "table", text, samples=14)
+    np.testing.assert_array_equal(counts, square[1:])
+
+
+@pytest.mark.parametrize(
+    ("text", "samples"),
+    [("wavelength (nm)\n" + AXIS.replace(",", "\n") + "\n", None),
+     (f"wavelength (nm),{AXIS}\n", None),
+     ("pixel,wavelength (nm)\n" + "".join(f"{at},{nm:g}\n" for at, nm in enumerate(NM)), None)],
+)  # fmt: skip
+def test_an_axis_alone_has_no_spectra(text: str, samples: int | None, tmp_path: Path) -> None:
+    path = tmp_path / "axis"
+    path.write_text(text, encoding="utf-8")
+    with opened_recording(path, samples=samples) as found:
+        assert found.counts.shape == (0, 12)
+        assert found.counts[:].shape == (0, 12)
+        assert found.axis is not None
+        np.testing.assert_array_equal(found.axis.values, NM)
+    with pytest.raises(DatasetError, match="no spectra"), opened_recording(path, samples=12):
+        pass
+
+
+@pytest.mark.parametrize(
+    "text",
+    [AXIS.replace(",", "\n") + "\n", AXIS + "\n", AXIS.replace(",", "\n"),
+     "".join(f"{at} {nm:g}\n" for at, nm in enumerate(NM))],
+)  # fmt: skip
+def test_a_row_or_a_column_without_a_heading_is_a_spectrum(text: str, tmp_path: Path) -> None:
+    counts, seen, _ = read(tmp_path / "column", text)
+    np.testing.assert_array_equal(counts, [NM])
+    assert seen == (None, None, None)
+
+
+def test_a_text_that_may_be_cut_short_is_said_to_be(tmp_path: Path) -> None:
+    path = tmp_path / "recording"
+    for text, said in (
+        (thor_spectra().replace("[EndOfFile]\n", ""), "EndOfFile"),
+        (ocean_single().rpartition("893")[0], "39 samples, and its header speaks of 40"),
+        (TABLES["a unit alone"][0].rstrip("\n"), "last line has no end"),
+    ):
+        understood = read(path, text)[2]
+        assert [line for line in understood if line.startswith("warning: ") and said in line]
+    for text in (thor_spectra(), ocean_single(), TABLES["a unit alone"][0]):
+        assert not [line for line in read(path, text)[2] if line.startswith("warning: ")]
