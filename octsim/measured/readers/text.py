@@ -35,8 +35,8 @@ def text_recording(path: Path, wanted: Wanted) -> Recording:
     """Return the recording in a text, which is read whole.
 
     Headings tell what is what; else what stands above or beside the counts and may be wavelengths;
-    else `octsim.measured.readers.sides.told`. Counts are real numbers, as a text does not say of how
-    many bits they are.
+    else `octsim.measured.readers.sides.told`. Counts are real numbers, as a text does not say of
+    how many bits they are.
 
     Raises
     ------
