@@ -39,7 +39,7 @@ def add(commands: "argparse._SubParsersAction[Any]") -> None:
 
 def do(given: Namespace) -> int:
     """Read, fit, write and tell."""
-    from octsim.config.load import load_config
+    from octsim.config.load import load_and_tell
     from octsim.datasets.files import opened
     from octsim.datasets.writer import write_stream
     from octsim.studies.measured.study import doubts, measured, own_band, summary
@@ -54,9 +54,12 @@ def do(given: Namespace) -> int:
     overlays: list[str | Mapping[str, Any]] = [given.config] if given.config else []
     if not given.config:
         # nothing says which part of the spectra is meant, or at which depth: all, and the peak's
-        band = own_band(load_config({"measured": asked}))
+        band = own_band(load_and_tell({"measured": asked})[0])
         overlays.append({"spectrum": band, "processing": _BY_ITSELF})
-    config = load_config(*overlays, {"measured": asked})
+    config, said = load_and_tell(*overlays, {"measured": asked})
+    # of a config that no one wrote there is nothing to remark
+    for remark in said if given.config else ():
+        print(f"octsim: warning: {remark}", file=sys.stderr)
     output = Path(given.output)
     write_stream(measured.stream(config), output)
     with opened(output, "measured", config) as found:

@@ -8,7 +8,6 @@ from octsim.config.models import Config
 from octsim.measured.full_scale import saturated
 from octsim.measured.recording import Recording
 from octsim.measured.setup import FIRST, Setup
-from octsim.phase.fringe_status import FringeStatus
 
 _DIM = 0.01
 """Of the source's largest power, below which a sample says next to nothing."""
@@ -77,9 +76,6 @@ def _doubted(config: Config, setup: Setup) -> Iterator[str]:
             "warning: measured.dark: not given, so the camera's level without light counts as "
             "light; give spectra of a closed shutter"
         )
-    status = FringeStatus(int(setup.fringe.status[0]))
-    if remedy := status.measured_remedy:
-        yield f"warning: the mean spectrum is {status.name.lower()}: {remedy}"
     apart = abs(float(setup.fringe.depth[0]) - setup.model.depth)
     if apart * np.ptp(setup.band.wavenumber) / np.pi > _FAR:
         yield (

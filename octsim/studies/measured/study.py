@@ -1,6 +1,6 @@
 """A lab's own spectra in octsim's form, each with its phase (`snakemake measured`)."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from operator import attrgetter
 from typing import Any
 
@@ -180,5 +180,27 @@ def doubts(found: xr.Dataset) -> list[str]:
     return [
         *(line.removeprefix("warning: ") for line in str(found.attrs["understood"]).splitlines()
           if line.startswith("warning: ")),
-        *doubts_of(found["spectrum_status"].values, "spectra", attrgetter("measured_remedy")),
+        *doubts_of(found["spectrum_status"].values, "spectra", _remedy_of(found)),
     ]  # fmt: skip
+
+
+_BESIDE_SOURCE = {
+    FringeStatus.POOR_FIT: (
+        "the fringe is no pure sinusoid, nor are octsim's own: a calibration by the same fit has "
+        "the same shape, and snakemake match says whether the spectrum is the model's"
+    ),
+    FringeStatus.MIXED: (
+        "subtract fringes of other surfaces, else the phase is not of the diameter alone"
+    ),
+    FringeStatus.OTHER_DEPTHS: "name the depth, or subtract what is there without it",
+    FringeStatus.NO_FRINGE: "name the depth, or take more light or a longer mean",
+    FringeStatus.FAR_FROM_NOMINAL: "check expansion.diameter, the neuron's index and the axis",
+}
+"""What to do about spectra whose source is known, and so needs no division."""
+
+
+def _remedy_of(found: xr.Dataset) -> Callable[[FringeStatus], str]:
+    """Return what says what to do about a status of these spectra."""
+    if "measured.reference: not given" in str(found.attrs["understood"]):
+        return attrgetter("measured_remedy")
+    return lambda status: _BESIDE_SOURCE.get(status, status.measured_remedy)
