@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from octsim.base.errors import ConfigError
+
 _FIELDS = ("at", "x", "dark", "reference", "rate", "full_scale")
 """Options that are keys of the section measured."""
 _BY_ITSELF = {"depth": "peak", "sinusoid": {"weights": "shot"}}
@@ -61,6 +63,12 @@ def do(given: Namespace) -> int:
     for remark in said if given.config else ():
         print(f"octsim: warning: {remark}", file=sys.stderr)
     output = Path(given.output)
+    named = {"--config": given.config, **config.measured.files}
+    for key, file in named.items():
+        if file is not None and output.exists() and Path(file).exists() and output.samefile(file):
+            raise ConfigError(
+                f"--output: {output} given, which is {key}'s own file; give another name"
+            )
     write_stream(measured.stream(config), output)
     with opened(output, "measured", config) as found:
         for line in str(found.attrs["understood"]).splitlines():

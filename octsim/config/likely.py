@@ -27,6 +27,15 @@ def light_remarks(config: Config) -> Iterator[str]:
     yield from _beam_and_fibre(config)
     yield from _without_contrast(config)
     yield from dim(config.spectrum.source, config.spectrum.wavelength)
+    own = config.processing.estimator
+    blind = own not in ("sinusoid", "maximum_likelihood")
+    # a lab's own spectra are read by the calibration's estimator
+    if config.spectrum.source != "flat" and blind and config.measured.spectra is None:
+        yield (
+            f"processing.estimator: {own} given, for which the source's shape is a window: at few "
+            "oscillations the slope is another than that of a flat source; sinusoid has the source "
+            "in its model"
+        )
 
 
 def _band(config: Config) -> tuple[float, float]:

@@ -133,7 +133,8 @@ class Measured(Section):
     ] = _key({}, "{a2: 0, a3: 0}, rad at the band's edge, or fit")
     rate: Frequency | None = _key(None, "of spectra, as 20 kHz; null: times are in the file")
     full_scale: Annotated[Number, Field(gt=0)] | None = _key(
-        None, "counts at which the camera is full; null: the largest of its whole numbers"
+        None,
+        "counts at which the camera is full; null: a converter's largest, where spectra reach it",
     )
     reference_depth: PositiveLength | None = _key(
         None, "optical depth of a reflector that does not move: its phase is subtracted"

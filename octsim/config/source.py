@@ -1,6 +1,7 @@
 """The part of the config on the source's spectrum: flat, a Gaussian, or a file's."""
 
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import (
@@ -104,6 +105,8 @@ def _inline(file: SourceFile) -> SourceTable:
 
 
 def _form(value: object) -> object:
+    if isinstance(value, str) and value != "flat" and not Path(value).suffix:
+        raise ValueError(FORMS)
     if isinstance(value, str) and value != "flat":
         return {"table": value}
     kinds = [kind for kind in ("gaussian", "table") if isinstance(value, Mapping) and kind in value]

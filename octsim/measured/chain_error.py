@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.phase.derivatives import wrapped
 from octsim.phase.estimators.one_fit import Design, Model, design_of, fitted
 
 Array = NDArray[np.float64]
@@ -46,11 +47,16 @@ def reference_error(
         ]
     )
     pair = np.stack([still + waves @ amplitudes, still + waves @ turned])
-    flat = np.ones_like(mean)
-    true = float(np.diff(fitted(design, pair, flat).phase)[0])
+    true = _moved(design, pair)
     generator, found = np.random.default_rng(_SEED), []
     for _ in range(DRAWS):
         wrong = model.source + source_error * generator.standard_normal(mean.size)
         off = design_of(model._replace(source=wrong), mean, read_variance)
-        found.append(float(np.diff(fitted(off, pair, flat).phase)[0]) / true - 1)
+        found.append(_moved(off, pair) / true - 1)
     return float(np.sqrt(np.mean(np.square(found))))
+
+
+def _moved(design: Design, pair: Array) -> float:
+    """Return by how much the phase moves from one of two spectra (2, K) to the other, rad."""
+    phase = fitted(design, pair, np.ones(pair.shape[1])).phase
+    return float(wrapped(phase[1] - phase[0]))

@@ -9,6 +9,7 @@ from scipy.optimize import nnls
 Array = NDArray[np.float64]
 _GROUPS = 24
 """Of samples that are about as bright, whose scatter is taken together."""
+_ROUNDS = 4
 
 
 class Transfer(NamedTuple):
@@ -53,8 +54,10 @@ def transfer(counts: Array, variance: Array) -> Transfer:
     # each group's scatter is known to the same fraction
     weight = size / np.maximum(of_each, 1e-6 * of_each.max())
     columns = np.column_stack([np.ones_like(mean), mean])
-    scale = np.abs(columns * weight[:, np.newaxis]).max(axis=0)
-    scale[scale == 0] = 1
-    found, _ = nnls(columns * weight[:, np.newaxis] / scale, of_each * weight)
-    read, per_count = found / scale
-    return Transfer(float(read), float(per_count))
+    for _ in range(_ROUNDS):
+        scale = np.abs(columns * weight[:, np.newaxis]).max(axis=0)
+        scale[scale == 0] = 1
+        found = nnls(columns * weight[:, np.newaxis] / scale, of_each * weight)[0] / scale
+        # by what is fitted, as groups that scatter less by chance would count more
+        weight = size / np.maximum(columns @ found, 1e-6 * of_each.max())
+    return Transfer(float(found[0]), float(found[1]))

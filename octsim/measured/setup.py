@@ -19,15 +19,20 @@ from octsim.measured.noise import Transfer, transfer
 from octsim.measured.recording import Recording
 from octsim.phase.estimators import estimate
 from octsim.phase.estimators.estimate import Estimate
-from octsim.phase.estimators.one_fit import Design, Model, design_of, residuals, still_part
+from octsim.phase.estimators.one_fit import (
+    Design,
+    Model,
+    design_of,
+    residuals,
+    still_part,
+    unturned,
+)
 from octsim.phase.measured_spectra import resampled
 from octsim.phase.transform import without_source
 
 Array = NDArray[np.float64]
 FIRST = 512
 """Spectra at the start, whose mean tells depth, weights and noise."""
-KNOWN_FROM = {"reference": "measured.reference", "config": "spectrum.source", "none": "flat"}
-"""Where the source's spectrum is from."""
 
 
 class Setup(NamedTuple):
@@ -42,10 +47,11 @@ class Setup(NamedTuple):
     time: Array
     """(T,), s."""
     dark: Mean | None
+    reference: Mean | None
     source: Array | None
     """Power of the source in the band, (K,); None of a flat one."""
     source_from: str
-    """A key of `KNOWN_FROM`."""
+    """reference, config or none."""
     mean: Array
     """Of the first spectra, without the dark, (K,)."""
     full_scale: float
@@ -90,7 +96,10 @@ def setup_of(config: Config, recording: Recording) -> Setup:
     dark = mean_of("measured.dark", asked.dark, k.size, band) if asked.dark else None
     full, net = _first(recording, band, dark, asked.full_scale)
     mean = net.mean(axis=0)
-    source, source_error, known_from = _source(config, k.size, dark, mean, band)
+    reference = None
+    if asked.reference is not None:
+        reference = mean_of("measured.reference", asked.reference, k.size, band)
+    source, source_error, known_from = _source(config, reference, dark, mean, band)
     processing = calibrating(config)
     nominal = _nominal(config)
     even = np.linspace(band.wavenumber[0], band.wavenumber[-1], band.wavenumber.size)
@@ -111,12 +120,15 @@ def setup_of(config: Config, recording: Recording) -> Setup:
     noise = transfer(mean, _variance(design, net))
     if processing.sinusoid.weights == "shot":
         design = design_of(model, mean, noise.read_noise**2)
-    alone = resampled((mean - still_part(design, mean))[np.newaxis], band.wavenumber, even)
+    bare = mean - still_part(design, mean)
+    if model.turned is not None:
+        bare = bare + unturned(design, model.turned, mean)
+    alone = resampled(bare[np.newaxis], band.wavenumber, even)
     fringe = estimate(alone, even, np.array([nominal]), processing, source=on_even)
     order = np.argsort(k)
     return Setup(
-        k[order], order, band, time, dark, source, known_from, mean, full, model, design, noise,
-        noise.variance(mean), fringe, dispersion,
+        k[order], order, band, time, dark, reference, source, known_from, mean, full, model,
+        design, noise, noise.variance(mean), fringe, dispersion,
         reference_error(model, design, mean, source_error, noise.read_noise**2),
     )  # fmt: skip
 
@@ -158,12 +170,11 @@ def _nominal(config: Config) -> float:
 
 
 def _source(
-    config: Config, samples: int, dark: Mean | None, mean: Array, band: Axis
+    config: Config, reference: Mean | None, dark: Mean | None, mean: Array, band: Axis
 ) -> tuple[Array | None, Array, str]:
     """Return the source's power in the band, its error, and where it is from."""
     exact = np.zeros(band.sample.size)
-    if config.measured.reference is not None:
-        reference = mean_of("measured.reference", config.measured.reference, samples, band)
+    if reference is not None:
         return *source_by(reference, dark, mean, band), "reference"
     given = source_of(config.spectrum.source)
     if given is None:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from octsim.config.models import Config
+from octsim.measured.axis import taken
 from octsim.measured.full_scale import saturated
 from octsim.measured.recording import Recording
 from octsim.measured.setup import FIRST, Setup
@@ -35,7 +36,12 @@ def _told(config: Config, recording: Recording, setup: Setup) -> Iterator[str]:
         yield f"dark: {setup.dark.spectra} spectra, mean level {setup.dark.value.mean():.4g} counts"
     yield f"source: {_SOURCES[setup.source_from]}"
     full = "not known" if np.isinf(setup.full_scale) else f"{setup.full_scale:g} counts"
-    count = int((saturated(np.asarray(recording.counts[:FIRST]), setup.full_scale) > 0).sum())
+    count = int(
+        (
+            saturated(taken(np.asarray(recording.counts[:FIRST]), band.sample), setup.full_scale)
+            > 0
+        ).sum()
+    )
     yield f"full scale: {full}; {count} of the first {min(FIRST, setup.spectra)} spectra reach it"
     per_count = setup.noise.per_count
     photons = f"{1 / per_count:.3g} photoelectrons a count" if per_count > 0 else "no shot noise"
@@ -70,6 +76,16 @@ def _doubted(config: Config, setup: Setup) -> Iterator[str]:
         yield (
             "warning: spectrum.source: flat, so a calibration is of another source than these "
             "spectra; give it the source too, as a file of wavelength and power"
+        )
+    if not setup.noise.per_count and not setup.noise.read_variance:
+        yield (
+            "warning: measured.spectra: the spectra do not scatter, so the noise is not known, and "
+            "neither are the errors of phases; give them as they were recorded"
+        )
+    if setup.reference is not None and setup.reference.spectra == 1:
+        yield (
+            "warning: measured.reference: one spectrum given, whose noise is not known and not in "
+            "chain_error; give several"
         )
     if setup.dark is None:
         yield (

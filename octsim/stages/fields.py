@@ -17,7 +17,7 @@ from octsim.instrument.build import optics_of, scene_of
 from octsim.instrument.points import Points
 from octsim.optics.materials import Table
 from octsim.schemes.cost import MOST_WAVENUMBERS
-from octsim.schemes.fullwave.cylinder_on_plane import cylinder_on_plane
+from octsim.schemes.fullwave.cylinder_on_plane import cylinders_of
 from octsim.schemes.fullwave.orders import most_nodes
 from octsim.schemes.light import TERMS, AccuracyStatus, Waves
 from octsim.stages.scatter import WHOLE, Share
@@ -80,7 +80,7 @@ def _most_nodes(config: Config) -> int:
     tables = any(isinstance(one, Table) for one in config.scene.refractive_index.of.values())
     if tables or not config.scene.cylinders:
         return MOST_WAVENUMBERS
-    largest = cylinder_on_plane(scene_of(config, config.sweep.diameters.stop))
+    largest = cylinders_of(scene_of(config, config.sweep.diameters.stop))
     return most_nodes(largest, optics_of(config).band, config.tracing.accuracy)
 
 

@@ -56,3 +56,13 @@ def test_what_can_t_be_read_is_one_line_and_leaves_what_was_there(
     assert said.err.count("\n") == 1
     assert "spectra.npy" in said.err
     assert (tmp_path / "measured.nc").read_text(encoding="utf-8") == "mine"
+
+
+def test_a_file_that_is_read_is_never_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = given(tmp_path)
+    before = (tmp_path / "spectra.npy").read_bytes()
+    assert main([*arguments[:-1], str(tmp_path / "spectra.npy")]) == 1
+    assert "--output" in capsys.readouterr().err
+    assert (tmp_path / "spectra.npy").read_bytes() == before

@@ -14,8 +14,8 @@ from octsim.config.models import Config
 from octsim.figures.match import match_figure
 from octsim.figures.style import look
 from octsim.instrument.instrument import Instrument
-from octsim.studies.match.fit import PARAMETERS, Observed, match
-from octsim.studies.match.study import doubts, match_of_spectra
+from octsim.studies.match.fit import PARAMETERS, Match, Observed, match
+from octsim.studies.match.study import _slope, doubts, match_of_spectra
 
 CONFIG = load_config({
     "tracing": {"scheme": "fullwave", "accuracy": 1e-3},
@@ -100,3 +100,37 @@ def test_a_scene_that_maxwell_is_not_solved_for_is_refused() -> None:
     steep = load_config({"objective": {"numerical_aperture": 1.4}})
     with pytest.raises(ConfigError, match="match: spectra are compared with Maxwell"):
         match_of_spectra(steep, xr.Dataset(), xr.Dataset())
+
+
+def calibrated(focus_rate: float = 0.0) -> xr.Dataset:
+    """Return a calibration whose slope falls by 0.02 mrad/nm for each nm of diameter."""
+    diameter = np.linspace(1.0, 2.0, 11)
+    names = list(PARAMETERS)
+    rates = {"diameter": -0.02, "gap": 0.0, "focus": focus_rate, "fill": 0.0, "neuron": 0.0}
+    return xr.Dataset(
+        {
+            "fixed_focus_phase_slope": ("diameter", 22 - 20 * (diameter - 1.4)),
+            "phase_curvature": ("diameter", 0 * diameter),
+            "fixed_focus_phase_slope_standard_error": ("diameter", 0 * diameter + 0.5),
+            "budget": (("diameter", "parameter"), np.full((11, 5), 0.1)),
+            **{f"{name}_sensitivity": ("diameter", 0 * diameter + rates[name]) for name in names},
+        },
+        {"diameter": diameter, "parameter": names},
+    )
+
+
+@pytest.mark.parametrize("focus_rate", [0.0, 0.03])
+def test_the_slope_of_another_diameter_is_the_calibration_s_there(focus_rate: float) -> None:
+    tolerance = np.array([0.02, 0.002, 0.01, 0.05, 0.002])
+    # 10 nm larger, with the focus where the law has it then
+    change = np.array([0.01, 0, 0.581 * 0.01, 0, 0])
+    sure = Match(change, np.diag((1e-3 * tolerance) ** 2), change, change, 0.0, 0.0)
+    found = _slope(calibrated(focus_rate), 1.4, 0.581, sure, tolerance)
+    assert found["matched_phase_slope"] == pytest.approx(22 - 20 * 0.01, abs=2e-3)
+    assert found["matched_phase_slope_standard_error"] < 0.01
+    unsure = sure._replace(covariance=np.diag((1e3 * tolerance) ** 2))
+    left = _slope(calibrated(focus_rate), 1.4, 0.581, unsure, tolerance)
+    # a fit that tells nothing leaves what was believed
+    assert left["matched_phase_slope"] == pytest.approx(22, abs=1e-3)
+    off = 1e3 * 0.01 * np.hypot((-0.02 - 0.581 * focus_rate) * 2, focus_rate)
+    assert left["matched_phase_slope_standard_error"] == pytest.approx(off, rel=0.01)

@@ -175,3 +175,42 @@ def test_a_band_that_the_spectrometer_does_not_see_is_refused(tmp_path: Path, la
     wide = {"wavelength": {"min": "600 nm", "max": "900 nm"}}
     with pytest.raises(OctsimError, match=r"spectrum\.wavelength: 0\.6 um to 0\.9 um given, but"):
         measured(config_of(written(tmp_path, lab), spectrum=wide))
+
+
+@pytest.mark.parametrize("a2", [0.0, 3.0, -8.0])
+def test_dispersion_that_is_given_leaves_the_fringe_visible(tmp_path: Path, a2: float) -> None:
+    x = (K - (K[0] + K[-1]) / 2) / ((K[-1] - K[0]) / 2)
+    angle = 2 * 4.0 * (K - (K[0] + K[-1]) / 2) + 0.3 + a2 * x**2
+    light = 3000 * SOURCE * (1 + 0.5 * np.cos(angle))
+    lab = recorded()
+    noisy = np.random.default_rng(2).poisson(light, (60, K.size)).astype(float) + DARK
+    found = measured(
+        config_of(written(tmp_path, lab._replace(spectra=noisy), dispersion={"a2": a2}))
+    )
+    assert (found["spectrum_status"] == FringeStatus.VISIBLE).all()
+    assert float(found["fringe_phase"].mean()) == pytest.approx(0.3, abs=0.01)
+
+
+def test_frames_without_light_have_no_phase(tmp_path: Path, lab: Lab) -> None:
+    lab.spectra[20:24] = lab.dark[:4]
+    found = measured(config_of(written(tmp_path, lab)))
+    assert (found["spectrum_status"].values[20:24] == FringeStatus.NO_FRINGE).all()
+    assert np.isnan(found["fringe_phase"].values[20:24]).all()
+    assert np.isfinite(found["fringe_phase"]).sum() == 56
+
+
+@pytest.mark.parametrize("phase", [0.0, np.pi - 0.005])
+def test_the_source_s_noise_is_in_the_error_wherever_the_phase_is(
+    tmp_path: Path, phase: float
+) -> None:
+    lab = recorded(phase=np.full(60, phase))
+    error = float(measured(config_of(written(tmp_path, lab)))["chain_error"])
+    assert 1e-6 < error < 1e-2
+
+
+def test_a_depth_that_is_fitted_is_refused(tmp_path: Path, lab: Lab) -> None:
+    config = load_config({
+        "measured": written(tmp_path, lab), "processing": {"sinusoid": {"depth": "fitted"}},
+    })  # fmt: skip
+    with pytest.raises(OctsimError, match=r"processing\.sinusoid\.depth: fitted given"):
+        measured(config)

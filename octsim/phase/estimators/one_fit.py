@@ -171,6 +171,26 @@ def still_part(design: Design, mean: Array) -> Array:
     return found
 
 
+def unturned(design: Design, turned: Array, mean: Array) -> Array:
+    """Return what a spectrum (K,) gains where its fitted fringe is without its dispersion.
+
+    Parameters
+    ----------
+    design : Design
+        Of a model with that dispersion.
+    turned : ndarray, shape (K,)
+        Its phase, rad.
+    mean : ndarray, shape (K,)
+    """
+    middle = design.cosine + design.step
+    cosines, sines = slice(design.cosine, middle), slice(middle, middle + design.step)
+    waves = design.columns[:, cosines] + 1j * design.columns[:, sines]
+    change = waves * (np.exp(-1j * turned)[:, np.newaxis] - 1)
+    found: Array = change.real @ (design.solver[cosines] @ mean)
+    found += change.imag @ (design.solver[sines] @ mean)
+    return found
+
+
 def _phase(parameters: Array, cosine: int, sine: int) -> tuple[Array, Array]:
     """Return phases (T,), and how they turn with cosine and sine, (T, 2)."""
     real, imaginary = parameters[:, cosine], parameters[:, sine]

@@ -144,16 +144,25 @@ def first_nodes(
     if scene.above:
         # what goes to and fro below them is the farther the more digits are asked for
         reach *= 1 - 0.25 * math.log10(accuracy)
-    # what neighbours send to each other comes later
-    reach += 0.75 * scene.n_water * apart(cylinders)
+    reach += _later(cylinders)
     return _nodes(reach, band, accuracy) + 2 * bool(scene.shells)
 
 
-def most_nodes(scene: CylinderOnPlane, band: tuple[float, float], accuracy: float) -> int:
+def most_nodes(
+    cylinders: Sequence[CylinderOnPlane], band: tuple[float, float], accuracy: float
+) -> int:
     """Return the wavenumbers in a band that are not exceeded, whatever the focus."""
+    scene = cylinders[0]
     if scene.largest_index > _RESONANT * scene.n_water:
         return MOST_WAVENUMBERS
-    return min(MOST_WAVENUMBERS, 2 * _nodes(scene.far_side, band, accuracy) + 24)
+    return min(
+        MOST_WAVENUMBERS, 2 * _nodes(scene.far_side + _later(cylinders), band, accuracy) + 24
+    )
+
+
+def _later(cylinders: Sequence[CylinderOnPlane]) -> float:
+    """Return the optical path by which what neighbours send to each other comes later, µm."""
+    return 0.75 * cylinders[0].n_water * apart(cylinders)
 
 
 def more_nodes(number: int, excess: float, fall: float) -> int:

@@ -171,7 +171,7 @@ def solve(point: Point, band: tuple[float, float], accuracy: float, operators: O
     cylinders = scene, *point.neighbours
     orders = first_orders(cylinders, aperture, focus, band[1], accuracy)
     number = first_nodes(cylinders, aperture, focus, band, accuracy)
-    most = most_nodes(scene, band, accuracy)
+    most = most_nodes(cylinders, band, accuracy)
     if point.left_out(number) > 0:
         # a table turns at its rows, maybe between wavenumbers that are too far apart to see it;
         # beyond the most, nothing is solved, and the status says so

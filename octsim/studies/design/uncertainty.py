@@ -17,7 +17,7 @@ from octsim.phase.estimators.series import series_phases
 from octsim.phase.estimators.visible import Fringe, fringe_at
 from octsim.phase.fringe_status import WITH_PHASE
 from octsim.phase.noise import shot_noise
-from octsim.phase.transform import prepared, window_samples
+from octsim.phase.transform import prepared, window_samples, without_source
 from octsim.studies.design.cell import OFFSETS, SIDES, Seen
 from octsim.studies.design.settings import PARAMETERS, STEP
 
@@ -126,7 +126,10 @@ def known(
     depth = np.array([neuron.n_neuron * neuron.diameter])
     fringe = fringe_at(rest[np.newaxis], neuron.wavenumber, depth, seen.error, neuron.power)
     nothing = np.full(len(ESTIMATORS), np.nan)
-    brightness, height = float(rest.mean()), _depth_peak(rest, neuron.wavenumber, depth)
+    brightness, height = (
+        float(rest.mean()),
+        _depth_peak(rest, neuron.wavenumber, depth, neuron.power),
+    )
     if fringe.status[0] not in WITH_PHASE:
         none = np.full((len(ESTIMATORS), len(PARAMETERS)), np.nan)
         return Known(nothing, nothing, none, np.nan, brightness, height, fringe)
@@ -146,11 +149,12 @@ def known(
     return Known(slope, statistical, relative, bound, brightness, height, fringe)
 
 
-def _depth_peak(spectrum: Array, wavenumber: Array, depth: Array) -> float:
+def _depth_peak(spectrum: Array, wavenumber: Array, depth: Array, power: Array | None) -> float:
     """Return the amplitude of a spectrum (K,) at a depth (1,), of cos(2zk) 1, by a window."""
-    shaped = prepared(spectrum[np.newaxis], _WEIGHTED)
+    shaped = prepared(without_source(spectrum[np.newaxis], power), _WEIGHTED)
     height = np.abs(at_depth(shaped, wavenumber, depth)[0])
-    return float(2 * height / window_samples(_WEIGHTED.window, wavenumber.size).sum())
+    window = window_samples(_WEIGHTED.window, wavenumber.size)
+    return float(2 * height / (window if power is None else window * power).sum())
 
 
 def _by(phase: Array, names: list[str], tolerance: float) -> tuple[float, float, Array]:

@@ -62,7 +62,8 @@ def match_of_spectra(
         raise ConfigError(f"match: spectra are compared with Maxwell's equations, but {reason}")
     exact = with_flat_source(waves_of(config))
     diameter = config.expansion.diameter
-    focus = focus_line(config, law).at(diameter)
+    line = focus_line(config, law)
+    focus = line.at(diameter)
     observed = _observed(config, measured)
     found = match(exact, observed, diameter, focus)
     errors = np.sqrt(np.diag(found.covariance))
@@ -94,7 +95,7 @@ def match_of_spectra(
             "source_difference": _source_difference(config, observed),
             "measured_depth": float(measured["measured_depth"]),
             "nominal_depth": config.swept_group_index * diameter,
-            **_slope(calibration, diameter, found, tolerance),
+            **_slope(calibration, diameter, line.slope, found, tolerance),
         },
         {
             "wavenumber": observed.wavenumber,
@@ -120,6 +121,11 @@ def _observed(config: Config, measured: xr.Dataset) -> Observed:
     counts = measured["counts"][: whole.size].values[whole][:, inside].astype(float)
     net = counts.mean(axis=0) - measured["dark_level"].values[inside]
     variance = measured["sample_variance"].values[inside] / whole.sum()
+    if not (variance > 1e-12 * net.max() ** 2 / net.size**2).all():
+        raise ConfigError(
+            "match: the measured spectra do not scatter, so how well they are known is not; give "
+            "measured.spectra as they were recorded"
+        )
     return Observed(measured["wavenumber"].values[inside], net, power[inside], np.sqrt(variance))
 
 
@@ -144,26 +150,35 @@ def _source_difference(config: Config, observed: Observed) -> float:
 
 
 def _slope(
-    calibration: xr.Dataset, diameter: float, found: Match, tolerance: Array
+    calibration: xr.Dataset, diameter: float, law_slope: float, found: Match, tolerance: Array
 ) -> dict[str, Any]:
-    """Return the slope of the model that fits best, and its error by that fit and tolerances."""
+    """Return the slope by the fit and what was believed, together, and its error.
+
+    Sensitivities of a calibration are by nm, and hold the focus where the law has it.
+    """
     at, known = sensitivity_at(diameter, calibration), calibration["diameter"].values
     names = [str(name) for name in calibration["parameter"].values]
 
     def rate(name: str) -> float:
         values = calibration.get(f"{name}_sensitivity")
-        return 0.0 if values is None else float(np.interp(diameter, known, values.values))
+        per_unit = 1e3 if parameter_named(name).unit == "um" else 1.0
+        return 0.0 if values is None else per_unit * float(np.interp(diameter, known, values))
 
     rates = np.array([rate(name) for name in PARAMETERS])
-    # what the fit says and what was believed, together
-    both = np.linalg.inv(np.linalg.inv(found.covariance) + np.diag(tolerance**-2.0))
+    # a larger diameter at a held focus is one whose focus is off the law
+    focus, size = PARAMETERS.index("focus"), PARAMETERS.index("diameter")
+    rates[size] -= law_slope * rates[focus]
+    certain = np.diag(1 / np.maximum(tolerance, 1e-3 * np.sqrt(np.diag(found.covariance))) ** 2)
+    fitted = np.linalg.inv(found.covariance)
+    both = np.linalg.inv(fitted + certain)
     budget = calibration["budget"]
-    of_all = {name: _budget(budget, name, diameter, known) for name in names}
-    others = sum(value**2 for name, value in of_all.items() if name not in PARAMETERS)
+    others = sum(
+        _budget(budget, name, diameter, known) ** 2 for name in names if name not in PARAMETERS
+    )
     return {
         "fixed_focus_phase_slope": at.slope,
         "fixed_focus_phase_slope_standard_error": at.standard_error,
-        "matched_phase_slope": at.slope + float(rates @ found.change),
+        "matched_phase_slope": at.slope + float(rates @ both @ fitted @ found.change),
         "matched_phase_slope_standard_error": float(np.sqrt(rates @ both @ rates + others)),
     }
 

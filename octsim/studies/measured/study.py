@@ -29,6 +29,10 @@ _BLOCK_BYTES = 8e6
 """Of counts as floats, that are worked on at a time: what fast memory holds, and few gigabytes."""
 
 
+_FAINT = 0.2
+"""Standard error of a phase, rad, above which a fringe is not told from noise."""
+
+
 def opened(config: Config) -> Any:
     """Return the recording that a config names, to be entered.
 
@@ -86,6 +90,11 @@ def measured(config: Config) -> Stream:
             f"calibration.estimator: {config.calibration.estimator} given, but measured spectra "
             "are fitted by the sinusoid, at their own wavelengths; give sinusoid"
         )
+    if config.processing.sinusoid.depth == "fitted":
+        raise ConfigError(
+            "processing.sinusoid.depth: fitted given, but a series of spectra is fitted at one "
+            "depth; give held"
+        )
     with opened(config) as recording:
         setup = setup_of(config, recording)
         lines = understood(config, recording, setup)
@@ -122,11 +131,15 @@ def _parts(config: Config, layout: Layout, setup: Setup) -> Iterator[Part]:
 def _phases(setup: Setup, raw: NDArray[Any]) -> dict[str, Any]:
     """Return what is found of each spectrum."""
     net = setup.net(raw)
-    found, full = fitted(setup.design, net, setup.variance), saturated(raw, setup.full_scale)
+    found = fitted(setup.design, net, setup.variance)
+    full = saturated(taken(raw, setup.band.sample), setup.full_scale)
     own = int(setup.fringe.status[0])
     status = np.where(full > 0, FringeStatus.SATURATED, own)
     status = np.where(np.isfinite(net).all(axis=1), status, FringeStatus.NO_SPECTRUM)
     status = np.where((net <= 0).all(axis=1), FringeStatus.NO_LIGHT, status)
+    # the amplitude is within five standard errors of none
+    faint = np.isin(status, WITH_PHASE) & (found.phase_error > _FAINT)
+    status = np.where(faint, FringeStatus.NO_FRINGE, status)
     known = np.isin(status, WITH_PHASE)
     values = {
         "fringe_phase": found.phase, "fringe_phase_error": found.phase_error,

@@ -174,3 +174,10 @@ def test_cylinders_that_are_not_parallel_are_refused() -> None:
     turned = Cylinder("D", 1.0, 0.4, 0.4, axon, water, azimuth=0.1)
     with pytest.raises(OctsimError, match=r"cylinders\.1\.azimuth: not that of the first"):
         cylinders_of(Scene(glass, (plane, one, turned)))
+
+
+def test_a_neighbour_that_is_far_away_is_solved_too() -> None:
+    point = Point(ONE, PUPIL, 0.6, 0.4, neighbours=(OTHER._replace(offset=22.0),))
+    light = solve(point, (7.5, 8.5), 1e-2, Operators())
+    assert light.status == AccuracyStatus.REACHED
+    assert np.isfinite(light.values).all()
