@@ -25,13 +25,13 @@ from octsim.config.derive import calibrating, merge
 from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.instrument.instrument import Instrument
-from octsim.measured.open import opened_recording
 from octsim.measured.setup import setup_of
 from octsim.phase.cramer_rao import diameter_bound
 from octsim.phase.estimators.one_fit import fitted
 from octsim.phase.estimators.series import series_phases
 from octsim.phase.measured_series import Series
 from octsim.phase.rest_error import stated_change
+from octsim.studies.measured.study import opened
 
 Array = NDArray[np.float64]
 DOCS = ROOT / "docs" / "measured.md"
@@ -107,7 +107,7 @@ def measured(
         ("spectra", scale * light), ("dark", np.zeros((100, K.size))), ("reference", bare)
     ):  # fmt: skip
         np.save(folder / f"{name}.npy", camera(expected, generator))
-    with opened_recording(folder / "spectra.npy", samples=K.size) as recording:
+    with opened(one.config) as recording:
         setup = setup_of(one.config, recording)
         found = fitted(setup.design, setup.net(recording.counts[:]), setup.variance)
     series = Series(setup.time, found.phase, found.phase_error)

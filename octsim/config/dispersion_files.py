@@ -3,8 +3,14 @@
 import re
 from typing import NamedTuple
 
-from octsim.config.source_files import WAVELENGTH
-from octsim.config.table_text import Block, is_number, read_blocks
+from octsim.config.table_text import (
+    WAVELENGTH,
+    Block,
+    is_number,
+    read_blocks,
+    unit_in,
+    unit_of,
+)
 from octsim.config.units import parse_length
 
 FORM = "write a first row as 'wavelength (nm),n' or 'wavelength (nm),n,kappa'"
@@ -70,14 +76,7 @@ def read_indices(file: str, unit: str | None) -> Rows:
     if not blocks:
         raise ValueError(f"{file} holds nothing; {FORM}, and rows of numbers below")
     headings = [_heading(file, block, later=bool(place)) for place, block in enumerate(blocks)]
-    said = headings[0].unit
-    if said and unit and parse_length(f"1 {said}") != parse_length(f"1 {unit}"):
-        raise ValueError(f"unit: {unit} is given, but {file} says {said}; leave one of them out")
-    if not (unit := unit or said or _by_convention(blocks[0])):
-        raise ValueError(
-            f"{file} does not say the unit of its wavelengths; {FORM}, or give the unit beside it, "
-            f"as {{table: {file}, unit: nm}}"
-        )
+    unit = unit_of(file, unit, headings[0].unit, FORM, _by_convention(blocks[0]))
     first, *others = (
         [_values(file, number, row, heading, unit) for number, row in block.rows]
         for block, heading in zip(blocks, headings, strict=True)
@@ -134,7 +133,7 @@ def _heading(file: str, block: Block, *, later: bool) -> _Heading:
         if name:
             columns[name] = place
         if match := WAVELENGTH.fullmatch(cell.strip()):
-            unit = match[1] or match[2] or match[3]
+            unit = unit_in(match)
     for name in ("wavelength", "kappa" if later else "n"):
         if name not in columns:
             found = ", ".join(f"'{cell}'" for cell in cells)

@@ -26,6 +26,10 @@ def light_remarks(config: Config) -> Iterator[str]:
     yield from _attenuation(config)
     yield from _beam_and_fibre(config)
     yield from _without_contrast(config)
+    yield from _source(config)
+
+
+def _source(config: Config) -> Iterator[str]:
     yield from dim(config.spectrum.source, config.spectrum.wavelength)
     own = config.processing.estimator
     blind = own not in ("sinusoid", "maximum_likelihood")

@@ -28,7 +28,7 @@ FORMS = (
 )
 FAINTEST = 0.01
 """Power over the largest, below which there is hardly any light: of negative ones noise about 0."""
-_MOSTLY, _TRIED, _ROUNDING = 0.5, 401, 1e-9
+_MOSTLY, _TRIED = 0.5, 401
 
 
 class GaussianShape(Section):
@@ -80,7 +80,7 @@ class SourceTable(Section):
     table: SourceColumns
 
     @property
-    def source(self) -> Source:
+    def source(self) -> MeasuredSource:
         """What it is as optics."""
         return MeasuredSource(
             self.table.wavelength, tuple(max(one, 0.0) for one in self.table.power)
@@ -157,7 +157,7 @@ def unlit(given: Any, band: Band) -> Iterator[str]:
     """Say if a source is not known all over a band, or has no light in it."""
     if isinstance(given, SourceTable):
         first, last = given.table.wavelength[0], given.table.wavelength[-1]
-        if not first * (1 - _ROUNDING) <= band.min < band.max <= last * (1 + _ROUNDING):
+        if not given.source.spans(band.min, band.max):
             yield (
                 f"spectrum.source: known from {format_length(first)} to {format_length(last)}, but "
                 f"asked for from {format_length(band.min)} to {format_length(band.max)}; give a "

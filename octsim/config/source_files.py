@@ -1,17 +1,9 @@
 """Files that hold a source's spectrum: a wavelength and a power in each row."""
 
-import re
-
-from octsim.config.table_text import is_number, read_blocks
+from octsim.config.table_text import WAVELENGTH, is_number, read_blocks, unit_in, unit_of
 from octsim.config.units import parse_length
 
 FORM = "write a first row as 'wavelength (nm),power', and a row of numbers for each wavelength"
-WAVELENGTH = re.compile(
-    r"(?:wavelengths?|lambda|λ|wl|wvl)[\s_,/]*(?:in\s+)?"
-    r"(?:\(\s*(.+?)\s*\)|\[\s*(.+?)\s*\]|([^\W\d_]+))?",
-    re.IGNORECASE,
-)
-"""Of a heading: its unit is one of the groups."""
 
 
 def read_source(file: str, unit: str | None) -> dict[str, list[float]]:
@@ -38,14 +30,7 @@ def read_source(file: str, unit: str | None) -> dict[str, list[float]]:
     match = WAVELENGTH.fullmatch(heading[0].strip()) if heading else None
     if heading and (match is None or len(heading) != 2):
         raise ValueError(f"{file} has the headings {', '.join(heading)}; {FORM}")
-    said = match and (match[1] or match[2] or match[3])
-    if said and unit and parse_length(f"1 {said}") != parse_length(f"1 {unit}"):
-        raise ValueError(f"unit: {unit} is given, but {file} says {said}; leave one of them out")
-    if not (unit := unit or said):
-        raise ValueError(
-            f"{file} does not say the unit of its wavelengths; {FORM}, or give the unit beside it, "
-            f"as {{table: {file}, unit: nm}}"
-        )
+    unit = unit_of(file, unit, match and unit_in(match), FORM)
     found = []
     for number, row in rows:
         if len(row) != 2 or not all(map(is_number, row)):

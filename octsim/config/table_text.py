@@ -6,9 +6,19 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+from octsim.config.units import parse_length
+
 _COMMA = re.compile(r"([-+]?[0-9]+),([0-9]+(?:[eE][-+]?[0-9]+)?)")
 _OF_WORDS = re.compile(r"(?<=[^\s,;])\s+(?=[(\[])|(?<=refractive)\s+(?=index)|"
                        r"(?<=extinction)\s+(?=coefficient)", re.IGNORECASE)  # fmt: skip
+
+
+WAVELENGTH = re.compile(
+    r"(?:wavelengths?|lambda|λ|wl|wvl)[\s_,/]*(?:in\s+)?"
+    r"(?:\(\s*(.+?)\s*\)|\[\s*(.+?)\s*\]|([^\W\d_]+))?",
+    re.IGNORECASE,
+)
+"""The heading of wavelengths, with their unit or without."""
 
 
 class Block(NamedTuple):
@@ -26,6 +36,31 @@ def is_number(cell: str) -> bool:
     except ValueError:
         return False
     return "_" not in cell
+
+
+def unit_in(heading: re.Match[str]) -> str | None:
+    """Return the unit in a heading of wavelengths; None without one."""
+    return heading[1] or heading[2] or heading[3]
+
+
+def unit_of(
+    file: str, given: str | None, said: str | None, form: str, usual: str | None = None
+) -> str:
+    """Return the unit of a file's wavelengths: as given, as its heading says, or as is usual.
+
+    Raises
+    ------
+    ValueError
+        If none says it, or two differ; with the form that the file should have.
+    """
+    if said and given and parse_length(f"1 {said}") != parse_length(f"1 {given}"):
+        raise ValueError(f"unit: {given} is given, but {file} says {said}; leave one of them out")
+    if unit := given or said or usual:
+        return unit
+    raise ValueError(
+        f"{file} does not say the unit of its wavelengths; {form}, or give the unit beside it, "
+        f"as {{table: {file}, unit: nm}}"
+    )
 
 
 def read_blocks(file: str, is_heading: Callable[[list[str]], bool]) -> list[Block]:

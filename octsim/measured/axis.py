@@ -55,16 +55,15 @@ def samples_of(given: GivenAxis) -> Values | None:
         return Values(numbers, name, "nm" if name == "wavelength" else "1/um")
 
 
-def axis_of(recording: Recording, given: GivenAxis, of_file: Values | None) -> Array:
+def axis_of(recording: Recording, given: GivenAxis) -> Array:
     """Return the wavenumbers (K,), 1/µm, of a recording's samples, in their order.
 
     Parameters
     ----------
     recording : Recording
+        With the axis of the file that ``measured.axis`` names, if it names one.
     given : AxisFile, AxisPolynomial or None
         ``measured.axis``.
-    of_file : Values or None
-        What the file that it names holds.
 
     Raises
     ------
@@ -75,8 +74,6 @@ def axis_of(recording: Recording, given: GivenAxis, of_file: Values | None) -> A
     if isinstance(given, AxisPolynomial):
         nm = np.polynomial.Polynomial(given.polynomial)(np.arange(samples, dtype=float))
         values = Values(nm, "wavelength", "nm")
-    elif of_file is not None:
-        values = of_file
     elif recording.axis is not None:
         values = recording.axis
     else:

@@ -51,7 +51,7 @@ def mean_of(key: str, file: str, samples: int, axis: Axis) -> Mean:
     OctsimError
         If it can't be read, or has another number of samples.
     """
-    total, squares, count = np.zeros((2, axis.sample.size)), None, 0
+    total, count = np.zeros((2, axis.sample.size)), 0
     with opened_recording(file, samples=samples) as found:
         if found.counts.shape[1] != samples:
             raise ConfigError(

@@ -16,9 +16,7 @@ _FINER = 8  # zeros that are appended, over the samples
 
 def phase_over(wavenumber: Array, a2: float, a3: float) -> Array:
     """Return a2 x² + a3 x³ over the place x in the band, from −1 to 1, (K,), rad."""
-    x = place(wavenumber)
-    found: Array = a2 * x**2 + a3 * x**3
-    return found
+    return _phase(place(wavenumber), (a2, a3))
 
 
 def fitted(fringe: Array, wavenumber: Array) -> tuple[float, float]:

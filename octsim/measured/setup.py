@@ -10,7 +10,7 @@ from octsim.config.derive import calibrating
 from octsim.config.measured import Dispersion
 from octsim.config.models import Config
 from octsim.config.source import source_of
-from octsim.measured.axis import Axis, axis_of, samples_of, seconds_of, taken, within
+from octsim.measured.axis import Axis, axis_of, seconds_of, taken, within
 from octsim.measured.background import Mean, mean_of, source_by
 from octsim.measured.chain_error import reference_error
 from octsim.measured.dispersion import fitted, phase_over
@@ -91,7 +91,7 @@ def setup_of(config: Config, recording: Recording) -> Setup:
         If something is missing or does not fit; in a line that says what to do.
     """
     asked = config.measured
-    k = axis_of(recording, asked.axis, samples_of(asked.axis))
+    k = axis_of(recording, asked.axis)
     time, band = seconds_of(recording, asked.rate), within(k, config.spectrum.wavelength)
     dark = mean_of("measured.dark", asked.dark, k.size, band) if asked.dark else None
     full, net = _first(recording, band, dark, asked.full_scale)
@@ -106,7 +106,6 @@ def setup_of(config: Config, recording: Recording) -> Setup:
     on_even = None if source is None else resampled(source[np.newaxis], band.wavenumber, even)[0]
     mean_even = resampled(mean[np.newaxis], band.wavenumber, even)
     dispersion = _dispersion(asked.dispersion, mean_even, even, on_even)
-    processing = processing.model_copy(update={"estimator": "sinusoid"})
     held = nominal
     if not np.isfinite(held):
         peak = estimate(mean_even, even, np.array([nominal]), processing, source=on_even).depth[0]

@@ -52,6 +52,11 @@ class MeasuredSource:
     rows: tuple[float, ...]
     """Of any unit, none below 0."""
 
+    def spans(self, shortest: float, longest: float) -> bool:
+        """Return whether its rows reach from one wavelength to another, µm."""
+        first, last = self.wavelength[0] * (1 - _ROUNDING), self.wavelength[-1] * (1 + _ROUNDING)
+        return first <= shortest <= longest <= last
+
     def power(self, wavenumber: "Array") -> "Array":
         """Return its power at wavenumbers (K,), 1/µm, over its largest; (K,).
 
@@ -63,7 +68,7 @@ class MeasuredSource:
         import numpy as np
 
         wavelength, first, last = 2 * pi / wavenumber, self.wavelength[0], self.wavelength[-1]
-        if wavelength.min() < first * (1 - _ROUNDING) or wavelength.max() > last * (1 + _ROUNDING):
+        if not self.spans(wavelength.min(), wavelength.max()):
             raise ValueError(
                 f"the source is known from {first:g} to {last:g} um, and {wavelength.min():g} to "
                 f"{wavelength.max():g} um are asked for"

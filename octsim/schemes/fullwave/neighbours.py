@@ -110,16 +110,8 @@ def between(
     return found
 
 
-def matrix_of(waves: Between, to: int, of: int) -> Array:
-    """Return R of orders −M … M to, of orders −M′ … M′, (Y, 2 (2M + 1), 2 (2M′ + 1))."""
-    size_to, size_of = 2 * to + 1, 2 * of + 1
-    found = np.empty((len(waves.by_sum), 2 * size_to, 2 * size_of), np.complex128)
-    write(found, waves, to, of)
-    return found
-
-
 def write(found: Array, waves: Between, to: int, of: int) -> None:
-    """Write what `matrix_of` returns to where it belongs in a larger matrix."""
+    """Write R of orders −M … M to, of orders −M′ … M′, into (Y, 2 (2M + 1), 2 (2M′ + 1))."""
     farthest, size_to, size_of = waves.by_sum.shape[-1] // 2, 2 * to + 1, 2 * of + 1
     signs = _turns(farthest)[farthest - of : farthest + of + 1]
     # m + m′ rises with both, m − m′ falls with m′

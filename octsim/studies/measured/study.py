@@ -1,6 +1,7 @@
 """A lab's own spectra in octsim's form, each with its phase (`snakemake measured`)."""
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from operator import attrgetter
 from typing import Any
 
@@ -18,7 +19,7 @@ from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.measured.axis import axis_of, samples_of, taken
 from octsim.measured.full_scale import saturated
 from octsim.measured.open import opened_recording
-from octsim.measured.recording import RawForm
+from octsim.measured.recording import RawForm, Recording
 from octsim.measured.setup import Setup, setup_of
 from octsim.measured.told import understood
 from octsim.phase.estimators.one_fit import fitted
@@ -33,8 +34,9 @@ _FAINT = 0.2
 """Standard error of a phase, rad, above which a fringe is not told from noise."""
 
 
-def opened(config: Config) -> Any:
-    """Return the recording that a config names, to be entered.
+@contextmanager
+def opened(config: Config) -> Iterator[Recording]:
+    """Open the recording that a config names, with the axis of the file that it names.
 
     Raises
     ------
@@ -47,16 +49,16 @@ def opened(config: Config) -> Any:
             "measured.spectra: not given; name the file that holds a spectrometer's spectra"
         )
     raw = None if asked.raw is None else RawForm(**dict(asked.raw))
-    samples = None
-    if asked.axis is not None and (of_file := samples_of(asked.axis)) is not None:
-        samples = of_file.values.size
-    return opened_recording(asked.spectra, asked.at, raw, samples, asked.x)
+    axis = samples_of(asked.axis)
+    samples = None if axis is None else axis.values.size
+    with opened_recording(asked.spectra, asked.at, raw, samples, asked.x) as recording:
+        yield recording if axis is None else recording._replace(axis=axis)
 
 
 def own_band(config: Config) -> dict[str, dict[str, str]]:
     """Return all that the spectrometer of a config sees, as the band of a config's spectrum."""
     with opened(config) as recording:
-        k = axis_of(recording, config.measured.axis, samples_of(config.measured.axis))
+        k = axis_of(recording, config.measured.axis)
     ends = (2 * np.pi / float(one) for one in (k.max(), k.min()))
     return {"wavelength": dict(zip(("min", "max"), map(format_length, ends), strict=True))}
 

@@ -18,10 +18,10 @@ from octsim.schemes.fullwave.neighbours import (
     Between,
     Step,
     between,
-    matrix_of,
     straight,
     through_planes,
     to_another,
+    write,
 )
 from octsim.schemes.fullwave.operators import Operators
 from octsim.schemes.fullwave.orders import Orders
@@ -43,6 +43,13 @@ def field_of(
     point = Point(scenes[0], PUPIL, aperture, 0.4, neighbours=scenes[1:])
     found = field_at(point, K, orders, 1e-14, Operators())
     return np.array([found.terms[0, 0, 0], *found.values[:, 0]])
+
+
+def matrix_of(waves: Between, to: int, of: int) -> NDArray[Any]:
+    """Return R of orders −M … M to, of orders −M′ … M′, (Y, 2 (2M + 1), 2 (2M′ + 1))."""
+    found = np.empty((len(waves.by_sum), 2 * (2 * to + 1), 2 * (2 * of + 1)), complex)
+    write(found, waves, to, of)
+    return found
 
 
 @pytest.mark.parametrize(("along", "light"), OUTGOING)
