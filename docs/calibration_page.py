@@ -7,10 +7,11 @@ import xarray as xr
 from markdown import table
 
 from octsim.config.models import Config
-from octsim.studies.calibration.expansion import LARGEST, expansion, sensitivity_at
+from octsim.studies.calibration.expansion import expansion
 from octsim.studies.calibration.parameters import parameter_named
 from octsim.studies.calibration.round_trips import REST, TRIALS
 from octsim.studies.calibration.scheme import ACCURACY
+from octsim.studies.calibration.sensitivity import LARGEST, sensitivity_at
 from octsim.studies.calibration.study import RAYS
 
 TOLERANCE = {"um": "{0:g} nm", "rad": "{1:.3g}°", "1": "{2:g}"}
@@ -364,12 +365,15 @@ estimator:
 from octsim.studies.calibration.study import calibrating
 
 depth = config.scene.refractive_index.neuron * 1.4  # of the neuron's two sides, µm
-phase = octsim.phase_of("spectra.csv", calibrating(config), nominal_depth=depth).phase
+estimate = octsim.phase_of("spectra.csv", calibrating(config), depth, reference="source.csv")
+phase = estimate.phase
 octsim.expansion(phase - phase[0], 1.4, calibration)
 ```
 
-Heed its warnings: a source that is not flat, or samples that are cut, bend phases by far more than
-their standard error ([phases.md](phases.md)).
+`reference` is the source's own spectrum, in the same form and with the dark subtracted; without it
+the source is taken for flat. Heed the warnings: a source that is not flat, or samples that are cut,
+bend phases by far more than their standard error ([phases.md](phases.md)). Raw files of a
+spectrometer go in by [`octsim import`](measured.md), with all that comes before a phase.
 
 ## References
 

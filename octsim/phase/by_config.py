@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from octsim.base.errors import ConfigError, DatasetError, OctsimWarning
 from octsim.config.models import Config
 from octsim.config.processing import Processing
+from octsim.config.source import FAINTEST
+from octsim.optics.source import MeasuredSource, Source
 from octsim.optics.two_beams import predicted_phase_slope
 from octsim.phase.cut_samples import are_cut
 from octsim.phase.estimators import estimate, phases
@@ -96,6 +98,7 @@ def phase_of(
     source: str | Path | xr.Dataset,
     processing: Processing | None = None,
     nominal_depth: float | None = None,
+    reference: str | Path | xr.Dataset | Source | None = None,
 ) -> Estimate:
     """Estimate the phases of measured spectra.
 
@@ -108,6 +111,10 @@ def phase_of(
         sinusoid whose depth is fitted from the highest peak on.
     nominal_depth : float, optional
         Optical depth n_neuron · diameter (µm) of all spectra, for ``depth: nominal``.
+    reference : path, Dataset or Source, optional
+        The source's own spectrum, without the dark: spectra, whose mean is taken, as of `source`,
+        or what has a method ``power(wavenumber)``. The fit is shaped by it, and nothing is divided
+        by it; without it the source is taken for flat.
 
     Returns
     -------
@@ -126,7 +133,7 @@ def phase_of(
     ConfigError
         If the processing needs a nominal depth that is not given, or modelled spectra.
     FileError, DatasetError
-        If the spectra can't be read or used.
+        If the spectra can't be read or used, or the reference does not span their band.
 
     Examples
     --------
@@ -156,13 +163,39 @@ def phase_of(
     require_sensible(raw)
     cut = are_cut(np.asarray(raw.intensity, float))  # before they were interpolated
     nominal = np.full(intensity.shape[0], np.nan if nominal_depth is None else nominal_depth)
-    found = estimate(intensity, k, nominal, processing, cut)
+    power = None if reference is None else _power(reference, k)
+    found = estimate(intensity, k, nominal, processing, cut, power)
     for doubt in (
         *doubts_of(found.status, "spectra", attrgetter("measured_remedy")),
         *_lone(raw, cut),
     ):
         warnings.warn(f"phase_of: {doubt}", OctsimWarning, stacklevel=2)
     return found
+
+
+def _power(reference: str | Path | xr.Dataset | Source, wavenumber: Array) -> Array:
+    """Return the power at wavenumbers (K,) of a source that was measured, over its largest.
+
+    Raises
+    ------
+    DatasetError
+        If it can't be read, has no light, or does not span the wavenumbers.
+    """
+    if not isinstance(reference, str | Path | xr.Dataset):
+        return reference.power(wavenumber)
+    power, k = even(*(raw := read_raw(reference)))
+    mean = power.mean(axis=0)
+    if mean.max() <= 0 or mean.min() < -FAINTEST * mean.max():
+        raise DatasetError(
+            f"reference: {raw.name} has powers from {mean.min():.4g} to {mean.max():.4g}; give the "
+            "source's spectrum with the dark subtracted, once"
+        )
+    wavelength = 2 * np.pi / k[::-1]
+    rows = np.maximum(mean[::-1], 0.0)
+    try:
+        return MeasuredSource(tuple(wavelength.tolist()), tuple(rows.tolist())).power(wavenumber)
+    except ValueError as error:
+        raise DatasetError(f"reference: {error}; give one that spans the spectra") from None
 
 
 def _lone(raw: Raw, cut: NDArray[np.bool_]) -> list[str]:
