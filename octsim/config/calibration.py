@@ -203,6 +203,10 @@ class ExpansionConfig(Section):
         "through more of them, {reference: [[first, last], ...]}, counted from 1",
     )
 
+    slope: Literal["calibration", "match"] = key(
+        "calibration",
+        "of what: the neuron of this config, or, of measured spectra, the one that fits them best",
+    )
     fit: Annotated[
         tuple[Fitted, ...], BeforeValidator(as_tuple), AfterValidator(_with_diameter)
     ] = key(

@@ -31,6 +31,13 @@ def _fitted(config: Config) -> Iterator[str]:
             f"expansion.series: {config.expansion.series} given, and measured.spectra too; give "
             "one of the two, phases or spectra"
         )
+    if config.expansion.slope == "match" and (
+        config.measured.spectra is None or config.expansion.several
+    ):
+        yield (
+            "expansion.slope: match given, which is of measured.spectra and fits the diameter "
+            "alone; give calibration, or measured.spectra, no expansion.bands and fit: [diameter]"
+        )
     shells = shells_of(config)
     for name in fit:
         word, _, number = name.partition("_")

@@ -206,8 +206,8 @@ _BESIDE = (
         "expansion", "octsim.studies.calibration.expansion:expansion_of_series",
         "Turn a measured series of phases into nanometres",
         # a calibration, or responses where more than the diameter is fitted
-        reads=("expansion", "measured.average"), after=("calibration", "responses", "measured"),
-        beside=True,
+        reads=("expansion", "measured.average"),
+        after=("calibration", "responses", "measured", "match"), beside=True,
         summary="octsim.studies.calibration.expansion:summary",
         doubts="octsim.studies.calibration.expansion:doubts",
         figures=(

@@ -93,13 +93,15 @@ def inputs_of(stage: Stage, config: Config) -> tuple[str, ...]:
 
     A given focus needs no law, and what is traced at it does not change with the law. An expansion
     is by a calibration, or by responses where more is fitted, and of measured spectra where no
-    series of phases is named.
+    series of phases is named; its slope is that of the config, or of what fits these best.
     """
     left = set() if needs_law(config) else {"focus_law"}
     if stage.name == "expansion":
         left.add("calibration" if config.expansion.several else "responses")
         if config.measured.spectra is None or config.expansion.series is not None:
             left.add("measured")
+        if config.expansion.slope != "match":
+            left.add("match")
     return tuple(name for name in stage.after if _exists(name, config) and name not in left)
 
 

@@ -23,15 +23,14 @@ from octsim.phase.estimators.series import series_phases
 from octsim.phase.measured_series import Series, change_from_rest, read_series
 from octsim.phase.noise import shot_noise
 from octsim.studies.calibration.expansion import (
-    LARGEST,
     doubts,
     expansion,
     expansion_of_series,
-    sensitivity_at,
     series_expansion,
 )
 from octsim.studies.calibration.expansion import summary as expansion_summary
 from octsim.studies.calibration.scheme import converged
+from octsim.studies.calibration.sensitivity import LARGEST, sensitivity_at
 
 Array = NDArray[np.float64]
 ROOT = Path(__file__).parents[2]
@@ -102,6 +101,32 @@ def test_a_missing_phase_is_a_missing_expansion(table: xr.Dataset) -> None:
     found = expansion([0.01, np.nan], 1.4, table)
     assert np.isfinite(found.expansion).tolist() == [True, False]
     assert np.isnan(found.systematic_error[1])
+
+
+def test_the_slope_of_what_fits_measured_spectra_best_is_taken_where_it_fits(
+    table: xr.Dataset,
+) -> None:
+    match = xr.Dataset({
+        "matched_phase_slope": SLOPE + 1, "matched_phase_slope_standard_error": ERROR / 2,
+        "misfit": 0.01,
+    })  # fmt: skip
+    series = Series(TIME, phases(CHANGE), np.full(30, 1e-5))
+    config = load_config({"expansion": {"diameter": "1.4 um"}})
+    plain = series_expansion(config, series, table)
+    found = series_expansion(config, series, table, match=match)
+    assert float(found["fixed_focus_phase_slope"]) == SLOPE + 1
+    ratio = float(found["expansion"][-1] / plain["expansion"][-1])
+    assert ratio == pytest.approx(SLOPE / (SLOPE + 1), rel=1e-3)
+    last = found.isel(time=-1)
+    relative = float(last["systematic_error"] / abs(last["expansion"]))
+    assert relative == pytest.approx(ERROR / 2 / (SLOPE + 1), rel=1e-2)
+    with pytest.raises(OctsimError, match=r"expansion\.slope: match given, but the best fit"):
+        series_expansion(config, series, table, match=match.assign(misfit=0.2))
+
+
+def test_a_match_is_of_measured_spectra_alone() -> None:
+    with pytest.raises(ConfigError, match=r"^expansion\.slope: match given"):
+        load_config({"expansion": {"slope": "match", "series": "phases.csv"}})
 
 
 TIME = 1e-3 * np.arange(30, dtype=np.float64)

@@ -1,12 +1,10 @@
 """From a measured phase to nanometres (`snakemake expansion`)."""
 
 import warnings
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
+from numpy.typing import ArrayLike
 
 from octsim.base.errors import ConfigError, DatasetError, OctsimError, OctsimWarning
 from octsim.config.calibration import DIAMETER
@@ -20,61 +18,7 @@ from octsim.phase.rest_error import ErrorStatus, smallest_step, stated_change
 from octsim.studies.calibration.expansion_doubts import doubts as doubts
 from octsim.studies.calibration.expansion_doubts import named_samples, outliers_in
 from octsim.studies.calibration.expansion_fit import series_fit
-
-Array = NDArray[np.float64]
-LARGEST = 20.0
-"""Change of the diameter, nm, up to which a slope and its curvature serve."""
-
-
-class Sensitivity(NamedTuple):
-    """A calibration at one diameter."""
-
-    slope: float
-    """At a fixed focus and gap, mrad/nm."""
-    standard_error: float
-    """Of the slope, systematic, mrad/nm."""
-    curvature: float
-    """Change of the slope with the diameter, mrad/nm²."""
-
-
-class Expansion(NamedTuple):
-    """A change of the diameter with its standard errors, nm, each of the phase's shape."""
-
-    expansion: Array
-    statistical_error: Array
-    """By the error of the phase."""
-    systematic_error: Array
-    """By the error of the slope: the same fraction of every expansion."""
-
-    @property
-    def standard_error(self) -> Array:
-        """Both together, nm."""
-        both: Array = np.hypot(self.statistical_error, self.systematic_error)
-        return both
-
-
-def sensitivity_at(diameter: float, calibration: xr.Dataset) -> Sensitivity:
-    """Return a calibration interpolated at a diameter (µm): by cubic splines, its error by lines.
-
-    An error that is not known at one of the diameters beside is NaN.
-
-    Raises
-    ------
-    OctsimError
-        If the diameter is outside the calibration's.
-    """
-    known = calibration["diameter"].values
-    if not known[0] <= diameter <= known[-1]:
-        raise OctsimError(
-            f"diameter: {diameter:g} um given, outside the calibration's {known[0]:g} to "
-            f"{known[-1]:g} um; widen calibration.diameters and run the stage calibration again"
-        )
-    slope, curvature = (
-        float(CubicSpline(known, calibration[name].values)(diameter))
-        for name in ("fixed_focus_phase_slope", "phase_curvature")
-    )
-    error = calibration["fixed_focus_phase_slope_standard_error"].values
-    return Sensitivity(slope, float(np.interp(diameter, known, error)), curvature)
+from octsim.studies.calibration.sensitivity import Expansion, matched, sensitivity_at, solved
 
 
 def expansion(
@@ -113,20 +57,7 @@ def expansion(
     --------
     A phase that moved by 11 mrad: ``octsim.expansion(0.011, 1.4, calibration)``.
     """
-    at = sensitivity_at(diameter, calibration)
-    moved = 1e3 * np.asarray(phase, float)  # mrad
-    # the slope where the phase ends; without a root the neuron would have to shrink beyond the turn
-    end = np.sqrt(np.maximum(at.slope**2 + 2 * at.curvature * moved, 0.0))
-    change = 2 * moved / (at.slope + end)
-    if (np.abs(change) > LARGEST).any():
-        largest = float(np.nanmax(np.abs(moved)))
-        raise OctsimError(
-            f"phase: a change of {largest:.4g} mrad given, more than the {LARGEST:g} nm that the "
-            f"calibration holds for at {diameter:g} um; take the diameter and the rest nearer to it"
-        )
-    statistical = np.abs(1e3 * np.asarray(phase_error, float) / end)
-    systematic = np.abs(change) * at.standard_error / end
-    return Expansion(change, np.broadcast_to(statistical, change.shape), systematic)
+    return solved(phase, sensitivity_at(diameter, calibration), diameter, phase_error)
 
 
 def _file_of(config: Config) -> str:
@@ -144,6 +75,7 @@ def expansion_of_series(
     calibration: xr.Dataset | None,
     responses: xr.Dataset | None = None,
     measured: xr.Dataset | None = None,
+    match: xr.Dataset | None = None,
 ) -> xr.Dataset:
     """Return the expansions of the series that a config names.
 
@@ -157,7 +89,7 @@ def expansion_of_series(
         If there is no such series, or the series or the diameter does not serve.
     """
     if measured is not None and config.expansion.series is None:
-        return _of_spectra(config, calibration, measured)
+        return _of_spectra(config, calibration, measured, match)
     file = _file_of(config)  # without one nothing else is there
     if config.expansion.several and responses is not None:
         series = read_series_of_bands(file, len(config.expansion.bands))
@@ -168,7 +100,12 @@ def expansion_of_series(
     return series_expansion(config, read_series(file), calibration)
 
 
-def _of_spectra(config: Config, calibration: xr.Dataset | None, measured: xr.Dataset) -> xr.Dataset:
+def _of_spectra(
+    config: Config,
+    calibration: xr.Dataset | None,
+    measured: xr.Dataset,
+    match: xr.Dataset | None,
+) -> xr.Dataset:
     """Return the expansions of measured spectra."""
     if config.expansion.several or calibration is None:
         raise ConfigError(
@@ -176,11 +113,16 @@ def _of_spectra(config: Config, calibration: xr.Dataset | None, measured: xr.Dat
             "phase each; leave expansion.bands out and fit: [diameter]"
         )
     series = series_of(measured, config.measured.average)
-    return series_expansion(config, series, calibration, float(measured["chain_error"]))
+    chain_error = float(measured["chain_error"])
+    return series_expansion(config, series, calibration, chain_error, match)
 
 
 def series_expansion(
-    config: Config, series: Series, calibration: xr.Dataset, chain_error: float = 0.0
+    config: Config,
+    series: Series,
+    calibration: xr.Dataset,
+    chain_error: float = 0.0,
+    match: xr.Dataset | None = None,
 ) -> xr.Dataset:
     """Return the expansions of a series of phases.
 
@@ -191,6 +133,8 @@ def series_expansion(
     calibration : Dataset
     chain_error : float
         Relative error of changes of the phase by what was done before, as a source's spectrum.
+    match : Dataset, optional
+        Of this stage: the slope is that of the neuron which fits the spectra best.
 
     Returns
     -------
@@ -213,12 +157,15 @@ def series_expansion(
     """
     settings, alone = config.expansion, outliers(series)
     dropped = alone if settings.outliers == "drop" else np.zeros_like(alone)
+    at = sensitivity_at(settings.diameter, calibration)
+    if match is not None:
+        at = matched(at, match)
     kept = series._replace(phase=np.where(dropped, np.nan, series.phase))
     try:
         change, status = stated_change(
             kept, settings.rest, settings.drift != "none", settings.references
         )
-        found = expansion(change.phase, settings.diameter, calibration, change.error)
+        found = solved(change.phase, at, settings.diameter, change.error)
     except OctsimError as error:
         if not (alone & ~dropped).any():
             raise
@@ -226,7 +173,6 @@ def series_expansion(
             f"{error}; {named_samples(alone, series.time)} stand out from their neighbours: "
             "expansion.outliers: drop leaves them out"
         ) from None
-    at = sensitivity_at(settings.diameter, calibration)
     systematic = np.hypot(found.systematic_error, chain_error * np.abs(found.expansion))
     missing = np.where(np.isfinite(change.phase), 0.0, np.nan)
     measured = {"measured_phase": ("time", series.phase)}

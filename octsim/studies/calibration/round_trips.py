@@ -15,8 +15,9 @@ from octsim.phase.estimators.series import series_phases
 from octsim.phase.measured_series import Series, change_from_rest
 from octsim.phase.noise import shot_noise
 from octsim.stages.focus_law import focus_line
-from octsim.studies.calibration.expansion import Expansion, expansion
+from octsim.studies.calibration.expansion import expansion
 from octsim.studies.calibration.scheme import converged
+from octsim.studies.calibration.sensitivity import Expansion
 from octsim.studies.calibration.tolerances import Place, drawn
 
 TRIALS = 200

@@ -15,15 +15,13 @@ from octsim.config.source import source_of
 from octsim.datasets.files import flags, make
 from octsim.phase.fringe_status import WITH_PHASE, FringeStatus
 from octsim.stages.focus_law import focus_line
-from octsim.studies.calibration.expansion import sensitivity_at
 from octsim.studies.calibration.parameters import parameter_named
 from octsim.studies.calibration.scheme import waves_of
+from octsim.studies.calibration.sensitivity import MISFIT, sensitivity_at
 from octsim.studies.match.fit import PARAMETERS, Match, Observed, match
 from octsim.studies.responses.separability import Separability
 
 Array = NDArray[np.float64]
-MISFIT = 0.05
-"""Residual of the best fit over the spectrum, root mean squares, from which it is no match."""
 _SOURCE = 0.05
 """Root mean square difference of the sources' shapes, over the largest power, that is said."""
 
