@@ -7,7 +7,7 @@ The models are the one source: `config/schema.json` and `docs/config.md` are gen
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
-from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag
+from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, Tag, model_validator
 
 from octsim.config.archive import ArchiveConfig
 from octsim.config.calibration import ActionPotential, Calibration, ExpansionConfig
@@ -26,6 +26,7 @@ from octsim.config.fields import key as _key
 from octsim.config.light import FibreMode, GaussianFill, PolarisationConfig
 from octsim.config.light import Objective as Objective
 from octsim.config.measured import Measured as Measured
+from octsim.config.pixels import with_lab_pixels
 from octsim.config.processing import Processing as Processing
 from octsim.config.resources import Budget, Scatter
 from octsim.config.resources import Cache as Cache
@@ -204,6 +205,11 @@ class Config(Section):
     cache: Cache = Cache()
     budget: Budget = Budget()
     scatter: Scatter = Scatter()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _lab_pixels(cls, data: Any) -> Any:
+        return with_lab_pixels(data)
 
     @property
     def pupil(self) -> GaussianFill | FibreMode | Literal["uniform"]:

@@ -103,8 +103,12 @@ class Instrument:
         """Sum light of this instrument over wavenumbers (K,), 1/µm, within its band."""
         field = self.scheme.field(light, wavenumber, self._optics, self._options)
         found = PointSpectrum(*spectrum_of(field), light.status)
-        source = source_of(self.config.spectrum.source)
-        return found if source is None else _lit(found, source.power(wavenumber))
+        spectrum = self.config.spectrum
+        if spectrum.plain:
+            return found
+        source = source_of(spectrum.source)
+        brightest = 1.0 if source is None else float(source.power(wavenumber).max())
+        return _recorded(found, spectrum.recorded(found.intensity, wavenumber), brightest)
 
     def spectrum(self, diameter: float, focus: float) -> PointSpectrum:
         """Return the spectrum of a diameter at a focus, both µm."""
@@ -148,10 +152,11 @@ class Instrument:
         return instrument_key(traced_keys(self.config), code)
 
 
-def _lit(found: PointSpectrum, power: NDArray[np.float64]) -> PointSpectrum:
-    """Return the spectrum of a point by a source of some power (K,)."""
-    intensity = found.intensity * power
+def _recorded(
+    found: PointSpectrum, intensity: NDArray[np.float64], brightest: float
+) -> PointSpectrum:
+    """Return the spectrum of a point as it is recorded, (K,), by a source of some largest power."""
     largest = float(intensity.max())
     # an error may be anywhere in the band
-    scale = float(found.intensity.max() * power.max()) / largest if largest > 0 else 1.0
+    scale = float(found.intensity.max() * brightest) / largest if largest > 0 else 1.0
     return PointSpectrum(intensity, found.error * scale, found.status)

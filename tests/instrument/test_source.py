@@ -74,3 +74,24 @@ def test_stated_errors_of_phases_through_a_source_are_their_scatter() -> None:
     assert (found.status != FringeStatus.NO_FRINGE).all()
     ratio = found.phase.std() / found.phase_standard_error.mean()
     assert ratio == pytest.approx(1, abs=0.12)
+
+
+def test_a_pixel_sees_the_mean_over_its_width() -> None:
+    pixels = {"polynomial": [640, 12, -0.05]}
+    coarse = Instrument(load_config(merge(RUN, {"spectrum": {"pixels": pixels}})))
+    assert coarse.wavenumber.size == 23
+    fine = Instrument(load_config(merge(RUN, {"spectrum": {"samples": 20001}})))
+    nm = np.polynomial.Polynomial([640, 12, -0.05])(np.arange(30.0))
+    middle = 2e3 * np.pi / nm[::-1]
+    width = np.interp(coarse.wavenumber, middle, np.gradient(middle))
+    exact = fine.spectrum(1.4, 0.88).intensity
+    seen = coarse.spectrum(1.4, 0.88).intensity
+    inner = slice(2, -2)  # the outermost pixels look beyond the band
+    expected = np.array([
+        exact[np.abs(fine.wavenumber - k) <= w / 2].mean()
+        for k, w in zip(coarse.wavenumber, width, strict=True)
+    ])  # fmt: skip
+    off = np.abs(seen - expected)[inner].max() / exact.max()
+    sampled = np.interp(coarse.wavenumber, fine.wavenumber, exact)
+    rolled = np.abs(sampled - expected)[inner].max() / exact.max()
+    assert off < 2e-3 < rolled / 3

@@ -85,9 +85,8 @@ class Bench:
         found = tuple(collected(optics, rays, larger) for optics in self._optics)
         limits = [self._spectrum(one, diameter, focus) for one in self._limits]
         exact, _, status = self._spectrum(self._exact, diameter, focus)
-        power = self._config.spectrum.power()
         own, swapped = (
-            np.stack(each) if power is None else np.stack(each) * power
+            np.stack([self._config.spectrum.recorded(one, self._wavenumber) for one in each])
             for each in ([one.intensity for one in found], [one.swapped for one in found])
         )
         spectra = np.stack([*own, *(one.intensity for one in limits)])
