@@ -39,7 +39,9 @@ WAVELENGTH = np.linspace(0.65, 0.90, 512)  # µm, of the pixels
 K = 2 * np.pi / WAVELENGTH
 REST, MOVED, STEP = 40, 20, 1e-3  # spectra, and µm
 DARK, READ = 100.0, 3.0  # counts
-DIAMETERS, WIDTHS, PHOTONS = (1.0, 1.4, 2.0), (200, 150, 100), (1e6, 3e7)
+PHOTONS = (1e6, 3e7)
+# a source of 50 nm holds a quarter of a fringe of less than 4 µm
+NEURONS = (*itertools.product((1.0, 1.4, 2.0), (200, 150, 100)), (4.0, 50), (4.5, 50))
 BASE: dict[str, Any] = {
     "tracing": {"scheme": "fullwave", "accuracy": 1e-6},
     "sweep": {"focus": {"slope": 0.581, "intercept": "69 nm"}},
@@ -133,7 +135,7 @@ def cells(series: int, generator: np.random.Generator) -> pd.DataFrame:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         np.savetxt(folder / "axis.csv", 1e3 * WAVELENGTH, header="wavelength (nm)", comments="")
-        for diameter, width in itertools.product(DIAMETERS, WIDTHS):
+        for diameter, width in NEURONS:
             shape = np.exp(-4 * np.log(2) * ((WAVELENGTH - 0.775) / (1e-3 * width)) ** 2)
             power = shape * (1 + 0.05 * np.cos(2 * np.pi * WAVELENGTH / 0.02))
             one = neuron(folder, diameter, power)
