@@ -46,7 +46,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     do: Callable[[Namespace], int] = given.do
     try:
         with warnings.catch_warnings():
-            warnings.showwarning = _show  # type: ignore[assignment]
+            warnings.showwarning = _show
             ended = do(given)
         sys.stdout.flush()
         return ended
