@@ -69,16 +69,16 @@ def _digest(file: IO[bytes], size: int) -> str:
     """Return the digest of a file's first bytes, in lower-case hexadecimal."""
     import numpy as np  # which those who look at an archive alone do without
 
-    piece = bytearray(_PIECE)
-    room, words = memoryview(piece), np.frombuffer(piece, "<u8").reshape(-1, _ROW // 8)
+    words = np.empty((_PIECE // _ROW, _ROW // 8), "<u8")
+    sums, room = np.empty(len(words), "<u8"), words.data.cast("B")
     found = hashlib.sha256(size.to_bytes(8, "little"))
     file.seek(0)
     while size:
         part = room[: min(size, _PIECE)]
-        count = file.readinto(part)  # type: ignore[attr-defined]
-        if count < len(part):
+        if file.readinto(part) < len(part):  # type: ignore[attr-defined]
             raise EOFError("the file became shorter while it was read")
-        room[count:] = bytes(_PIECE - count)
-        found.update(words.sum(axis=1, dtype=np.uint64).astype("<u8", copy=False))
-        size -= count
+        room[len(part) :] = bytes(_PIECE - len(part))
+        np.add.reduce(words, axis=1, out=sums)
+        found.update(sums.data)
+        size -= len(part)
     return found.hexdigest()
