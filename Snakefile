@@ -27,7 +27,7 @@ settle_words()
 from filelock import FileLock, Timeout
 from octsim.base import clock
 from octsim.base.errors import OctsimError
-from octsim.base.files import digest_of, require_folder
+from octsim.base.files import digest_of, is_regular, require_folder
 from octsim.base.provenance import lock_file, source_digest
 from octsim.cli.job_server import PYTHON, SOCKET, start
 from octsim.config.derive import parts_of
@@ -81,8 +81,8 @@ FIGURES = run_figures(run)
 SHARES = shares_of(run)  # a stage that takes long is scattered over several jobs
 # measured series and spectra are files of the user's: what stands in them counts, not their time,
 # which another clock may have set; one that is not there is said by the job
-SERIES = [file for file in [run.expansion.series] if file and Path(file).is_file()]
-SPECTRA = [file for file in run.measured.files.values() if Path(file).is_file()]
+SERIES = [file for file in [run.expansion.series] if file and is_regular(file)]
+SPECTRA = [file for file in run.measured.files.values() if is_regular(file)]
 LOCK = FileLock(f"{FOLDER}/.lock")  # held from the start of a run to its end
 # of other targets, what was asked for once: an archive has it too, brought up to date
 BESIDE = [file for file in (f"{FOLDER}/{target}.nc" for target in TARGETS) if Path(file).is_file()]

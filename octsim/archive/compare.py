@@ -14,8 +14,7 @@ from octsim.archive.compare_points import Common, blocks, common_points
 from octsim.archive.compare_values import UNKNOWN, Deviation, ValueKind, deviation, value_kind
 from octsim.archive.recorded import Recorded, recorded
 from octsim.base.errors import DatasetError
-from octsim.base.files import reason
-from octsim.datasets.files import opened
+from octsim.datasets.files import guarded, opened
 
 ADDED = frozenset(
     {
@@ -183,13 +182,13 @@ def _lacking(one: Recorded, other: Recorded) -> tuple[str, ...]:
 @contextmanager
 def _both(stage: str, first: Recorded, second: Recorded) -> Iterator[tuple[xr.Dataset, xr.Dataset]]:
     files = first.datasets[stage], second.datasets[stage]
-    with opened(files[0], stage) as one, opened(files[1], stage) as other:
-        try:
-            yield one, other
+    with (
+        opened(files[0], stage) as one,
+        opened(files[1], stage) as other,
         # whatever a damaged or hostile file makes of its sizes and types
-        except (OSError, RuntimeError, ValueError, TypeError, LookupError, MemoryError) as error:
-            which = " or ".join(map(str, files))
-            raise DatasetError(f"{which}: can't be read ({reason(error)})") from None
+        guarded(" or ".join(map(str, files)), "make anew the one that is damaged"),
+    ):
+        yield one, other
 
 
 def _dataset(

@@ -5,12 +5,18 @@ from collections.abc import Iterable, Iterator
 from octsim.archive.compare import Comparison, DatasetComparison, Scalar, VariableComparison
 from octsim.archive.compare_origins import Change
 from octsim.archive.compare_values import ValueKind
+from octsim.base.errors import printable
 
 _SIDES = ("A", "B")
 
 
 def lines(comparison: Comparison) -> Iterator[str]:
     """Return a comparison line by line: config, versions, numbers, what the runs come to."""
+    # names and versions are what stands in files
+    return map(printable, _lines(comparison))
+
+
+def _lines(comparison: Comparison) -> Iterator[str]:
     for side, name, run in zip(_SIDES, comparison.names, comparison.runs, strict=True):
         yield f"{side}: {name} (run {run})"
     yield from ("", "config, A -> B", *_changes(comparison.config))

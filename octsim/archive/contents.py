@@ -11,13 +11,14 @@ import yaml
 
 from octsim.archive.origin import Origin, origin_of
 from octsim.archive.run_folder import FIGURES, Run
+from octsim.base.errors import one_line
 from octsim.base.provenance import LOCK, environment, lock_file
 from octsim.config.archive import ArchiveConfig
 from octsim.config.models import Config
 from octsim.datasets.catalog import TARGETS
+from octsim.datasets.files import guarded
 from octsim.datasets.gallery import CAPTIONS, drawn_with, figures_of
 from octsim.datasets.keys import stages_of
-from octsim.datasets.versions import printable
 
 CONFIG = "config.yaml"
 ENVIRONMENT = "environment.json"
@@ -99,12 +100,13 @@ _ABOUT_LOCK = "versions that octsim {} is installed with, pinned with hashes"
 
 
 def _dataset(stage: str, file: Path) -> Item:
-    with netCDF4.Dataset(file) as dataset:
+    with guarded(file), netCDF4.Dataset(file) as dataset:
         attributes = {name: dataset.getncattr(name) for name in dataset.ncattrs()}
         variables = tuple(
-            f"{name} ({getattr(one, 'units', '1')})" for name, one in dataset.variables.items()
+            one_line(f"{name} ({getattr(one, 'units', '1')})")
+            for name, one in dataset.variables.items()
         )
-    about = printable(attributes.get("title", stage))
+    about = one_line(attributes.get("title", stage))
     form = "application/x-netcdf"
     return Item(f"{stage}.nc", about, file, form, variables, origin_of(attributes))
 

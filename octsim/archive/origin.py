@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from octsim.datasets.versions import printable, recorded_environment
+from octsim.base.errors import one_line
+from octsim.datasets.versions import recorded_environment
 
 
 class Origin(NamedTuple):
@@ -21,8 +22,8 @@ class Origin(NamedTuple):
 def origin_of(attributes: Mapping[str, Any]) -> Origin:
     """Return what a dataset's attributes, as they stand in its file, record."""
     return Origin(
-        printable(attributes.get("octsim_version", "")),
+        one_line(attributes.get("octsim_version", "")),
         int(attributes.get("schema_version", 0)),
-        printable(attributes.get("source_digest", "")),
+        one_line(attributes.get("source_digest", "")),
         recorded_environment(attributes),
     )

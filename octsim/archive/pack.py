@@ -17,7 +17,7 @@ from octsim.archive.run_folder import Run, run_in
 from octsim.archive.verify import problems_in_zip
 from octsim.archive.zip_file import Member, write
 from octsim.base.errors import ArchiveError, DatasetError
-from octsim.base.files import digest, reason, whole
+from octsim.base.files import digest, reason, require_regular, whole
 from octsim.config.models import Config
 from octsim.datasets.files import opened
 
@@ -81,6 +81,7 @@ def pack(folder: Path, config: Config, file: Path | None = None) -> Packed:
 def packed_config(file: Path) -> Mapping[str, Any]:
     """Return the config in an archive that is to be replaced; empty if there is none to be read."""
     try:
+        require_regular(file)
         with zipfile.ZipFile(file) as archive:
             config = yaml.safe_load(archive.read(CONFIG))
     except (OSError, ValueError, KeyError, RuntimeError, zipfile.BadZipFile, yaml.YAMLError):

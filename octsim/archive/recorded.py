@@ -8,6 +8,7 @@ from typing import NamedTuple
 from octsim.archive.run_folder import run_in, stage_and_config
 from octsim.archive.verify import unpacked
 from octsim.base.errors import DatasetError
+from octsim.base.files import is_folder, reason, require_regular
 from octsim.config.models import Config
 from octsim.datasets.keys import keys_behind
 
@@ -57,12 +58,22 @@ def _located(path: Path) -> Iterator[Path]:
     DatasetError
         If there is nothing, or something else.
     """
-    if not path.exists():
-        raise DatasetError(f"{path}: not there; give a run's folder as results/thesis, or a file")
-    if path.suffix == ".zip" and path.is_file():
+    try:
+        if not is_folder(path):
+            require_regular(path)
+    except FileNotFoundError:
+        raise DatasetError(
+            f"{path}: not there; give a run's folder as results/thesis, or a file"
+        ) from None
+    except OSError as error:
+        raise DatasetError(
+            f"{path}: can't be read ({reason(error)}); give a run's folder as results/thesis, or a "
+            "file"
+        ) from None
+    if path.suffix == ".zip":
         with unpacked(path) as folder:
             yield folder
-    elif path.is_dir() or path.suffix == ".nc":
+    elif is_folder(path) or path.suffix == ".nc":
         yield path
     else:
         raise DatasetError(

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from octsim.base.errors import DatasetError
+from octsim.base.files import is_regular
 from octsim.config.models import Config
 from octsim.datasets.catalog import CATALOG
 from octsim.datasets.files import opened
@@ -40,7 +41,7 @@ def run_in(folder: Path) -> Run:
         If the folder has no datasets, one of them can't be read, or they are of different configs.
     """
     known = {stage: folder / f"{stage}.nc" for stage in sorted(CATALOG)}
-    datasets = {stage: file for stage, file in known.items() if file.is_file()}
+    datasets = {stage: file for stage, file in known.items() if is_regular(file)}
     if not datasets:
         raise DatasetError(f"{folder}: no datasets; give a folder as results/thesis")
     configs = {stage: stage_and_config(file, stage)[1] for stage, file in datasets.items()}

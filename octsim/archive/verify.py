@@ -13,7 +13,7 @@ from typing import IO
 from octsim.archive.checksums import DAMAGED, LARGEST, SUMS, differences, parse_sums
 from octsim.archive.zip_file import digests_in, is_canonical, safe_zip
 from octsim.base.errors import ArchiveError, FileError
-from octsim.base.files import digest, reason, require_empty
+from octsim.base.files import digest, is_folder, reason, require_empty, require_regular
 
 
 def problems(path: Path) -> list[str]:
@@ -30,8 +30,9 @@ def problems(path: Path) -> list[str]:
         If it is not an archive of octsim, or one that is not safe to unpack.
     """
     try:
-        if path.is_dir():
+        if is_folder(path):
             return _problems_in_folder(path)
+        require_regular(path)
         with path.open("rb") as stream:
             return problems_in_zip(stream)
     except ArchiveError as error:
@@ -50,7 +51,7 @@ def verify(path: Path) -> None:
     """
     lines = problems(path)
     if lines:
-        raise ArchiveError("\n".join(f"{path}: {line}" for line in lines))
+        raise ArchiveError(*(f"{path}: {line}" for line in lines))
 
 
 def unpack(file: Path, folder: Path) -> None:
@@ -70,7 +71,7 @@ def unpack(file: Path, folder: Path) -> None:
     FileError
         If the folder holds something, or can't be written; nothing is left in it.
     """
-    if file.is_dir():
+    if is_folder(file):
         raise ArchiveError(f"{file}: is a folder; give an archive's zip")
     require_empty(folder)
     verify(file)

@@ -1,8 +1,57 @@
 """What octsim says when something is not as it must be: one clear line, for a person."""
 
+import re
 
-class OctsimError(Exception):
-    """Something a user can put right; its text says what, where and how."""
+LONGEST = 300
+"""Letters of a line."""
+_LONG_WORD = re.compile(r"(\S{8})\S{12,}(\S{25})")
+"""As the path of a file in deep folders; its end tells more than its start."""
+_CUT = " ... "
+
+
+def printable(text: object) -> str:
+    r"""Return text with all that is no letter of a line written out, as ``\x1b`` and ``\n``.
+
+    What a file says can't move a terminal's cursor then, nor look like a line of octsim's.
+    """
+    said = str(text)
+    if said.isprintable():
+        return said
+    return "".join(
+        one if one.isprintable() else one.encode("unicode_escape").decode("ascii") for one in said
+    )
+
+
+def one_line(text: object) -> str:
+    """Return text as one line that may be printed, cut if it is long: first its long words."""
+    said = printable(_without_middle(str(text), 20_000))  # of megabytes not all is looked at
+    if len(said) <= LONGEST:
+        return said
+    # its end says what to do
+    return _without_middle(_LONG_WORD.sub(r"\1...\2", said), LONGEST)
+
+
+def _without_middle(text: str, most: int) -> str:
+    if len(text) <= most:
+        return text
+    head = 2 * most // 3
+    return text[:head] + _CUT + text[len(text) - (most - head - len(_CUT)) :]
+
+
+class _Said:
+    """Something that is said in a line for each argument, whatever these hold."""
+
+    args: tuple[object, ...]
+
+    def __str__(self) -> str:
+        return "\n".join(map(one_line, self.args))
+
+
+class OctsimError(_Said, Exception):
+    """Something a user can put right; its text says what, where and how.
+
+    Each argument is a line of it: what is no letter of a line is written out, a long one is cut.
+    """
 
 
 class ConfigError(OctsimError):
@@ -18,12 +67,16 @@ def not_installed(library: str, extra: str) -> OctsimError:
     return OctsimError(f"{library} is not installed; run: pip install 'octsim[{extra}]'")
 
 
-class OctsimWarning(UserWarning):
+class OctsimWarning(_Said, UserWarning):
     """Something that a user should know but that stops nothing."""
 
 
+class UncheckedWarning(OctsimWarning):
+    """A dataset has no digest of its bytes, so that damage in it can't be seen."""
+
+
 class FileError(OctsimError):
-    """A file can't be written."""
+    """A file can't be written, or is none that can be read."""
 
 
 class CacheError(OctsimError):

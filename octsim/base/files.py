@@ -1,9 +1,11 @@
-"""Files that appear whole or not at all."""
+"""Files that appear whole or not at all, and what is a file at all."""
 
 import contextlib
+import errno
 import hashlib
 import os
 import shutil
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,10 +14,47 @@ from typing import IO
 from octsim.base.errors import FileError
 
 
-def reason(error: Exception) -> str:
+def reason(error: BaseException) -> str:
     """Return what an error says, in one line."""
     said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return " ".join(said.split()) or type(error).__name__
+
+
+def require_regular(path: str | Path) -> None:
+    """Check that a path is a file with an end: no folder, no pipe that is waited for, no device.
+
+    Raises
+    ------
+    OSError
+        If it is not, or is not there, or may not be read. Nothing is opened.
+    """
+    try:
+        mode = Path(path).stat().st_mode
+    except ValueError:
+        raise OSError(errno.EINVAL, "its name holds a byte 0", str(path)) from None
+    if stat.S_ISDIR(mode):
+        raise IsADirectoryError(errno.EISDIR, "a folder, and no file", str(path))
+    if not stat.S_ISREG(mode):
+        raise OSError(errno.EINVAL, "no file, but a pipe or a device", str(path))
+    if not os.access(path, os.R_OK):
+        raise PermissionError(errno.EACCES, "permission denied", str(path))
+
+
+def is_regular(path: str | Path) -> bool:
+    """Return whether a path is a file that can be read, whatever stands there."""
+    try:
+        require_regular(path)
+    except OSError:
+        return False
+    return True
+
+
+def is_folder(path: str | Path) -> bool:
+    """Return whether a path is a folder, whatever stands there."""
+    try:
+        return stat.S_ISDIR(Path(path).stat().st_mode)
+    except (OSError, ValueError):
+        return False
 
 
 # snakemake's own notes and the copies that it keeps of files being replaced need some room too

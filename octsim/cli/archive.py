@@ -5,6 +5,8 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
+from octsim.base.errors import one_line
+
 
 def add(commands: Any) -> None:
     """Add the commands to a parser's others."""
@@ -18,16 +20,25 @@ def add(commands: Any) -> None:
         help="whose section archive has title, creators, license and date (default: that of the "
         "archive which is replaced, where there is one)",
     )
-    parser.set_defaults(do=run_archive, failed=1)
-    purpose = "check that an archive is as it was packed, to the last bit"
-    parser = commands.add_parser("verify", help=purpose, description=purpose)
-    parser.add_argument("path", type=Path, help="a zip, or the folder that it was unpacked to")
-    parser.set_defaults(do=run_verify, failed=1)
+    parser.set_defaults(do=run_archive, failed=2)
+    purpose = "check that an archive, a run or a dataset is as it was written, to the last bit"
+    parser = commands.add_parser(
+        "verify", help=purpose, description=purpose,
+        epilog="Exit status: 0 if all is as it was written (of what octsim 0.2.0 wrote that is not "
+        "known, and said), 1 if something is not, 2 if it can't be read, or nothing can be known.",
+    )  # fmt: skip
+    parser.add_argument(
+        "path",
+        type=Path,
+        help="a zip or the folder that it was unpacked to, a run's folder as results/thesis, or a "
+        "dataset",
+    )
+    parser.set_defaults(do=run_verify, failed=2)
     purpose = "verify an archive, then unpack it"
     parser = commands.add_parser("unpack", help=purpose, description=purpose)
     parser.add_argument("file", type=Path, help="a zip")
     parser.add_argument("folder", type=Path, help="not there yet, or empty")
-    parser.set_defaults(do=run_unpack, failed=1)
+    parser.set_defaults(do=run_unpack, failed=2)
 
 
 def run_archive(given: Namespace) -> int:
@@ -54,13 +65,36 @@ def run_archive(given: Namespace) -> int:
 
 
 def run_verify(given: Namespace) -> int:
-    """Verify an archive."""
-    from octsim.archive.verify import verify
+    """Verify an archive, or datasets; return the exit status."""
+    from octsim.archive.verify import problems
+    from octsim.archive.verify_datasets import is_of_datasets
 
     path = given.path.expanduser()
-    verify(path)
-    print(f"{path}: as it was packed")
-    return 0
+    if is_of_datasets(path):
+        return _verify_datasets(path)
+    lines = problems(path)
+    for line in lines:
+        print(f"octsim: {one_line(f'{path}: {line}')}", file=sys.stderr)
+    if not lines:
+        print(f"{path}: as it was packed")
+    return int(bool(lines))
+
+
+def _verify_datasets(path: Path) -> int:
+    from octsim.archive.verify_datasets import verified
+
+    whole, damaged, unknown = verified(path)
+    for file in damaged:
+        line = f"{file}: damaged: its bytes are not those that octsim wrote; run again to make it"
+        print(f"octsim: {one_line(f'{line} anew')}", file=sys.stderr)
+    if unknown:
+        names = ", ".join(file.name for file in unknown)
+        line = f"{path}: not known of {names}, without a digest of its bytes (as of octsim 0.2.0)"
+        print(f"octsim: warning: {one_line(line)}", file=sys.stderr)
+    if whole and not damaged:
+        what = f", {len(whole)} datasets" if path.is_dir() else ""
+        print(f"{path}: as it was written{what}")
+    return 1 if damaged else 0 if whole else 2
 
 
 def run_unpack(given: Namespace) -> int:

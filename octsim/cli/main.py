@@ -3,11 +3,12 @@
 import argparse
 import os
 import sys
+import warnings
 from argparse import Namespace
 from collections.abc import Callable, Sequence
 from typing import NoReturn
 
-from octsim.base.errors import OctsimError
+from octsim.base.errors import OctsimError, OctsimWarning
 from octsim.base.surroundings import settle
 from octsim.cli import archive, cache, compare, measured, reproduce
 
@@ -21,6 +22,12 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Print it, and where more is said; exit with 2."""
         self.exit(2, f"{self.prog}: {message}; `{self.prog} --help` says what there is\n")
+
+
+def _show(message: Warning | str, category: type[Warning], *_: object, **__: object) -> None:
+    """Print a warning of octsim's as a line of it; others are of who works on octsim."""
+    if issubclass(category, OctsimWarning):
+        print(f"octsim: warning: {message}", file=sys.stderr)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -38,7 +45,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     do: Callable[[Namespace], int] = given.do
     try:
-        ended = do(given)
+        with warnings.catch_warnings():
+            warnings.showwarning = _show
+            ended = do(given)
         sys.stdout.flush()
         return ended
     except BrokenPipeError:  # who reads has seen enough, as head and less have

@@ -36,7 +36,7 @@ def add(commands: "argparse._SubParsersAction[Any]") -> None:
     parser.add_argument("--reference", help="file with the source's own spectra, raw")
     parser.add_argument("--rate", help="of spectra, as '20 kHz'")
     parser.add_argument("--full-scale", type=float, help="counts at which the camera is full")
-    parser.set_defaults(do=do, failed=1)
+    parser.set_defaults(do=do, failed=2)
 
 
 def do(given: Namespace) -> int:

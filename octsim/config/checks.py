@@ -138,7 +138,7 @@ def require_possible(config: Config) -> None:
         If it is; one line for each problem.
     """
     if problems := list(impossible(config)):
-        raise ConfigError("\n".join(problems))
+        raise ConfigError(*problems)
 
 
 def _steep_remarks(config: Config) -> Iterator[str]:

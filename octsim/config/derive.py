@@ -99,7 +99,7 @@ def validated(data: Mapping[str, Any]) -> Config:
     try:
         return Config.model_validate(data)
     except ValidationError as error:
-        raise ConfigError("\n".join(dict.fromkeys(map(explain, error.errors())))) from None
+        raise ConfigError(*dict.fromkeys(map(explain, error.errors()))) from None
 
 
 def config_at(base: Mapping[str, Any], values: Mapping[str, Any]) -> Config:

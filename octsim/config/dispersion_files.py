@@ -24,8 +24,7 @@ _KAPPA = (
 )  # fmt: skip
 _COLUMNS = dict.fromkeys(_N, "n") | dict.fromkeys(_KAPPA, "kappa")
 _KNOWN = (
-    "the headings that are known are wavelength, lambda or wl with its unit, n, n_real or "
-    "refractive index, and kappa, k or extinction coefficient"
+    "known are wavelength, lambda or wl with a unit, n, n_real or index, kappa, k or extinction"
 )
 _MICROMETRES = (0.01, 99.0)
 """Between these are the wavelengths of refractiveindex.info, whose heading is wl alone, in µm."""

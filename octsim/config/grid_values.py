@@ -79,7 +79,7 @@ def _raise(problems: Mapping[str, None]) -> None:
     if len(lines) > _SHOWN:
         lines[_SHOWN:] = [f"grid: and {len(lines) - _SHOWN} problems more"]
     if lines:
-        raise ConfigError("\n".join(lines))
+        raise ConfigError(*lines)
 
 
 def _listed(config: Config, key: str, given: Any) -> list[Any]:

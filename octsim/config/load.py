@@ -8,7 +8,8 @@ from typing import Any
 
 import yaml
 
-from octsim.base.errors import ConfigError, OctsimWarning
+from octsim.base.errors import ConfigError, OctsimWarning, one_line
+from octsim.base.files import require_regular
 from octsim.config.checks import require_possible
 from octsim.config.derive import merge, overlaid, validated
 from octsim.config.fields import plain_data
@@ -42,6 +43,7 @@ def read_overlay(path: Path) -> Mapping[str, Any]:
         If it can't be read, or does not hold keys with values.
     """
     try:
+        require_regular(path)
         content = yaml.load(path.read_text(encoding="utf-8"), _Loader)
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not text"
@@ -144,5 +146,6 @@ def load_and_tell(*overlays: str | Path | Mapping[str, Any]) -> tuple[Config, li
         require_possible(config)
     # here alone: studies of other scenes leave out what these do not have
     if wrong := list(wrong_for_studies(config)):
-        raise ConfigError("\n".join(wrong))
-    return config, [*remarks(config), *unread(config, asked), *unread_scene(config, asked)]
+        raise ConfigError(*wrong)
+    said = [*remarks(config), *unread(config, asked), *unread_scene(config, asked)]
+    return config, list(map(one_line, said))

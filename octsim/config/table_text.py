@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+from octsim.base.files import require_regular
 from octsim.config.units import parse_length
 
 _COMMA = re.compile(r"([-+]?[0-9]+),([0-9]+(?:[eE][-+]?[0-9]+)?)")
@@ -102,6 +103,7 @@ def read_blocks(file: str, is_heading: Callable[[list[str]], bool]) -> list[Bloc
 def _lines(file: str) -> tuple[list[tuple[int, str]], list[str]]:
     """Return the lines that hold cells with their numbers, and the remarks above all of them."""
     try:
+        require_regular(file)
         text = Path(file).read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not text"
@@ -131,17 +133,26 @@ def _between(lines: list[str]) -> str:
 
 
 def _cells(line: str, between: str) -> list[str]:
-    cells = line.split() if between == " " else next(csv.reader([line], delimiter=between))
+    cells = line.split() if between == " " else _quoted(line, between)
     stripped = [cell.strip() for cell in cells]
     if between == ",":
         return stripped
     return [_COMMA.sub(r"\1.\2", cell) if _COMMA.fullmatch(cell) else cell for cell in stripped]
 
 
+def _quoted(line: str, between: str, *, skipinitialspace: bool = False) -> list[str]:
+    try:
+        return next(csv.reader([line], delimiter=between, skipinitialspace=skipinitialspace))
+    except csv.Error as error:
+        raise ValueError(
+            f"{line[:40]!r}... can't be read ({error}); give a number in each cell"
+        ) from None
+
+
 def _heading(line: str, between: str) -> list[str]:
     if between == " ":
         if '"' in line or "'" in line:
-            return next(csv.reader([line], delimiter=" ", skipinitialspace=True))
+            return _quoted(line, " ", skipinitialspace=True)
         parts = re.split(r"\s{2,}", _OF_WORDS.sub("_", line))
         return parts if len(parts) > 1 else parts[0].replace(", ", ",").split()
     cells = _cells(line, between)

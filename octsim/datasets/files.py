@@ -1,9 +1,11 @@
 """Datasets: what each variable means, where a dataset came from, and files that appear whole."""
 
 import json
+import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from enum import IntEnum
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -13,8 +15,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.base.errors import DatasetError
-from octsim.base.files import reason, whole
+from octsim.base.errors import DatasetError, UncheckedWarning
+from octsim.base.failures import said_in_a_line
+from octsim.base.file_digest import add_digest, require_undamaged
+from octsim.base.files import require_regular, whole
 from octsim.base.provenance import environment
 from octsim.config.models import Config
 from octsim.datasets.code import code_of
@@ -88,6 +92,7 @@ def write(dataset: xr.Dataset, path: str | Path) -> None:
     }
     with whole(Path(path)) as temporary:
         dataset.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
+        add_digest(temporary)
 
 
 def read(
@@ -114,12 +119,14 @@ def read(
     DatasetError
         If the file is missing, damaged, not a dataset of that stage, made from another config, or
         of a version of octsim that this one can't read.
+
+    Warns
+    -----
+    UncheckedWarning
+        If it has no digest of its bytes, as those of octsim 0.2.0 and before: damage is not seen.
     """
-    with opened(path, stage, config) as dataset:
-        try:
-            return dataset.drop_vars(list(without), errors="ignore").load()
-        except (OSError, RuntimeError, ValueError) as error:
-            raise _unreadable(Path(path), error) from None
+    with opened(path, stage, config) as dataset, guarded(path):
+        return dataset.drop_vars(list(without), errors="ignore").load()
 
 
 @contextmanager
@@ -128,30 +135,61 @@ def opened(
 ) -> Iterator[xr.Dataset]:
     """Open a stored dataset, to read parts of it.
 
-    Parameters and what is raised are those of `read`.
+    Parameters and what is raised are those of `read`. What is read of it later is `guarded`.
     """
     path = Path(path)
-    usual = netCDF4.get_chunk_cache()
-    netCDF4.set_chunk_cache(CHUNK_CACHE)  # or each variable would keep 64 MB of what was read
+    with guarded(path):
+        checked = _has_digest(path, stage)
+        dataset = _dataset(path)
+    with dataset:
+        with guarded(path):
+            found = _checked(dataset, path, stage, config)
+        if not checked:
+            _say_unchecked(path.parent)
+        yield found
+
+
+@contextmanager
+def guarded(path: str | Path, remedy: str = "") -> Iterator[None]:
+    """Say in one line that a dataset can't be read, whatever libraries raise of its file."""
+    remedy = remedy or _remedy(Path(path))
+    with said_in_a_line(str(path), remedy, DatasetError, of_memory=True):
+        yield
+
+
+def _has_digest(path: Path, stage: str | None) -> bool:
+    """Check that a dataset is a file, and as it was written; return whether the latter is known."""
     try:
-        dataset = xr.open_dataset(path, engine="netcdf4", cache=False)
+        require_regular(path)
+        return require_undamaged(path)
     except FileNotFoundError:
         remedy = f"run the stage {stage} first" if stage else "give a dataset of octsim"
         raise DatasetError(f"{path}: not there; {remedy}") from None
-    except (OSError, RuntimeError, ValueError) as error:
-        raise _unreadable(path, error) from None
+
+
+def _dataset(path: Path) -> xr.Dataset:
+    usual = netCDF4.get_chunk_cache()
+    netCDF4.set_chunk_cache(CHUNK_CACHE)  # or each variable would keep 64 MB of what was read
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # what a library warns of is no file of octsim's
+            return xr.open_dataset(path, engine="netcdf4", cache=False)
     finally:
         netCDF4.set_chunk_cache(*usual)
-    with dataset:
-        yield _checked(dataset, path, stage, config)
+
+
+@cache  # once for each folder
+def _say_unchecked(folder: Path) -> None:
+    warnings.warn(
+        f"{folder}: has datasets without a digest of their bytes, as octsim 0.2.0 wrote them or "
+        "another program left them, so damage can't be seen; run again to make them anew",
+        UncheckedWarning,
+        stacklevel=1,
+    )
 
 
 def _remedy(path: Path) -> str:
     return f"move it away and run again to make {path.name} anew"
-
-
-def _unreadable(path: Path, error: Exception) -> DatasetError:
-    return DatasetError(f"{path}: can't be read ({reason(error)}); {_remedy(path)}")
 
 
 def _checked(

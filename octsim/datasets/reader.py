@@ -8,10 +8,10 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from octsim.base.errors import DatasetError
-from octsim.base.files import reason
 from octsim.config.grid import Combination, as_text
 from octsim.config.models import Config
 from octsim.datasets.axes import axis_name
+from octsim.datasets.files import guarded
 from octsim.datasets.keys import stage_axes
 from octsim.datasets.layout import OF_ITS_OWN, Layout, filling
 
@@ -44,7 +44,8 @@ class Stored:
             for axis in self._axes
         ]
         self.dataset = dataset
-        counts = dataset[RAGGED].values.clip(min=0) if "ray" in dataset.dims else None
+        with guarded(dataset.encoding.get("source", stage)):
+            counts = dataset[RAGGED].values.clip(min=0) if "ray" in dataset.dims else None
         if counts is not None:
             self._ends = np.append(0, np.cumsum(counts.ravel()))
             self._shape = counts.shape
@@ -79,12 +80,8 @@ class Stored:
             for axis, rows in zip(self._axes, self._rows, strict=True)
         }
         file = self.dataset.encoding.get("source", self._stage)
-        try:
+        with guarded(file):
             part = self._own(place, points, swept, names).load()
-        except (OSError, RuntimeError, ValueError) as error:
-            raise DatasetError(
-                f"{file}: can't be read ({reason(error)}); move it away and run again"
-            ) from None
         own = self._like.own[at.position] if self._like else {}
         for name in set(own) & set(map(str, part.coords)):
             asked = own[name][1][points or slice(None)] if name == swept else own[name][1]

@@ -8,7 +8,7 @@ from typing import Any
 import xarray as xr
 from pydantic import ValidationError
 
-from octsim.base.errors import DatasetError
+from octsim.base.errors import DatasetError, one_line
 from octsim.config.derive import merge
 from octsim.config.messages import explain
 from octsim.config.models import Config
@@ -66,12 +66,7 @@ def recorded_environment(attributes: Mapping[str, Any]) -> dict[str, str] | None
         return None
     if not isinstance(found, dict):
         return None
-    return {printable(name): printable(version) for name, version in found.items()}
-
-
-def printable(text: object) -> str:
-    """Return what a file says as a part of a line, whatever it holds."""
-    return "".join(letter if letter.isprintable() else " " for letter in str(text))[:200]
+    return {one_line(name): one_line(version) for name, version in found.items()}
 
 
 def upgraded(dataset: xr.Dataset, path: Path) -> xr.Dataset:
@@ -93,7 +88,7 @@ def upgraded(dataset: xr.Dataset, path: Path) -> xr.Dataset:
         number = int(dataset.attrs.get("schema_version", 0))
     except (TypeError, ValueError, OverflowError):
         number = SCHEMA + 1
-    by = printable(dataset.attrs.get("octsim_version", "of an unknown version"))
+    by = one_line(dataset.attrs.get("octsim_version", "of an unknown version"))
     if number > SCHEMA:
         raise DatasetError(
             f"{path}: written by octsim {by}, as schema {number}; this octsim reads up to schema "

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from octsim.base.file_digest import add_digest
 from octsim.base.files import whole
 from octsim.datasets.files import CHUNK_CACHE, attributes
 from octsim.datasets.layout import Layout, filling
@@ -93,5 +94,7 @@ def write_stream(stream: Stream, path: str | Path) -> None:
     FileError
         If it can't be written; what stood at `path` before is still there.
     """
-    with whole(Path(path)) as temporary, netCDF4.Dataset(temporary, "w") as file:
-        pour(stream, _File(file, stream.layout))
+    with whole(Path(path)) as temporary:
+        with netCDF4.Dataset(temporary, "w") as file:
+            pour(stream, _File(file, stream.layout))
+        add_digest(temporary)

@@ -1,16 +1,15 @@
 """Opens what a lab's spectrometer wrote, by what the file holds and not by its name."""
 
-import os
-import stat
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from zipfile import ZipFile
 
-from octsim.base.errors import DatasetError, FileError
-from octsim.base.files import reason
+from octsim.base.errors import DatasetError, FileError, printable
+from octsim.base.failures import said_in_a_line
+from octsim.base.file_digest import require_undamaged
+from octsim.base.files import reason, require_regular
 from octsim.measured.readers.arrays import array_recording, arrays_recording
-from octsim.measured.readers.failures import said_in_a_line
 from octsim.measured.readers.hdf5 import hdf5_recording
 from octsim.measured.readers.matlab import matlab_recording
 from octsim.measured.readers.netcdf import netcdf_recording
@@ -90,30 +89,25 @@ def opened_recording(
     wanted = Wanted(at, samples, x)
     with ExitStack() as stack:
         with said_in_a_line(str(path), "copy it anew, or give another"):
+            require_undamaged(path)
             recording = _opened(path, raw, wanted, stack)
-        yield recording
+        yield recording._replace(understood=tuple(map(printable, recording.understood)))
 
 
 def _require_file(path: Path) -> None:
     """Refuse what is no file, before anything waits for it."""
     try:
-        found = path.stat()
+        require_regular(path)
     except FileNotFoundError:
         raise FileError(f"{path}: can't be read (not there); give a file with spectra") from None
-    except (OSError, ValueError) as error:
-        raise FileError(f"{_shown(path)}: can't be read ({reason(error)}); give a file") from None
-    if stat.S_ISDIR(found.st_mode):
-        raise FileError(f"{path}: a folder; give the file in it that holds the spectra")
-    if not stat.S_ISREG(found.st_mode):
-        raise FileError(f"{path}: no file, but a pipe or a device; give a file with spectra")
-    if not os.access(path, os.R_OK):
-        raise FileError(f"{path}: can't be read (permission denied); make it readable")
-    if not found.st_size:
+    except IsADirectoryError:
+        raise FileError(f"{path}: a folder; give the file in it that holds the spectra") from None
+    except OSError as error:
+        raise FileError(
+            f"{path}: can't be read ({reason(error)}); give a file with spectra"
+        ) from None
+    if not path.stat().st_size:
         raise FileError(f"{path}: empty; give a file with spectra")
-
-
-def _shown(path: Path) -> str:
-    return " ".join(str(path).replace("\0", "\\0").split())
 
 
 def _opened(path: Path, raw: RawForm | None, wanted: Wanted, stack: ExitStack) -> Recording:

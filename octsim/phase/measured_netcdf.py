@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from octsim.base.errors import FileError
-from octsim.base.files import reason
+from octsim.base.failures import said_in_a_line
+from octsim.base.file_digest import require_undamaged
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,8 @@ def read_variables(path: Path) -> xr.Dataset:
         If the file can't be read.
     """
     found = {}
-    try:
+    with said_in_a_line(str(path), "give netCDF or CSV", of_memory=True):
+        require_undamaged(path)
         with netCDF4.Dataset(path) as file, warnings.catch_warnings():
             warnings.simplefilter("error")  # what the library can't apply, it warns of
             for name, variable in file.variables.items():
@@ -36,5 +37,3 @@ def read_variables(path: Path) -> xr.Dataset:
                     units = {"units": variable.units} if "units" in variable.ncattrs() else {}
                     found[name] = (variable.dimensions, values, units)
             return xr.Dataset(found)
-    except (OSError, RuntimeError, ValueError, TypeError, Warning) as error:
-        raise FileError(f"{path}: can't be read ({reason(error)}); give netCDF or CSV") from None

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.base.errors import DatasetError, FileError
-from octsim.base.files import reason
+from octsim.base.files import reason, require_regular
 
 Array = NDArray[np.float64]
 SEPARATORS = ",;\t"
@@ -38,6 +38,7 @@ def is_netcdf(path: Path) -> bool:
         If it is not there, or can't be read.
     """
     try:
+        require_regular(path)
         with path.open("rb") as file:
             return file.read(4).startswith(_NETCDF)
     except FileNotFoundError:

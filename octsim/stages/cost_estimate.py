@@ -186,7 +186,7 @@ def check_budget(config: Config, cost: Cost, folder: Path) -> None:
             "make room, or vary less"
         )
     if problems:
-        raise ConfigError("\n".join(problems))
+        raise ConfigError(*problems)
 
 
 def _uncounted(config: Config) -> Iterator[str]:

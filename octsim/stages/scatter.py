@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.base.errors import DatasetError
-from octsim.base.files import reason, whole
+from octsim.base.failures import said_in_a_line
+from octsim.base.files import require_regular, whole
 from octsim.config.grid import Combination
 from octsim.config.models import Config
 from octsim.datasets.keys import differing
@@ -166,11 +167,10 @@ def notes_of(files: Iterable[Path]) -> dict[str, int]:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[tuple[zipfile.ZipFile, dict[str, Any]]]:
-    try:
+    with said_in_a_line(str(path), _REMEDY, DatasetError):
+        require_regular(path)
         with zipfile.ZipFile(path) as file:
             yield file, json.loads(file.read(_INDEX))
-    except (OSError, zipfile.BadZipFile, EOFError, KeyError, ValueError) as error:
-        raise DatasetError(f"{path}: can't be read ({reason(error)}); {_REMEDY}") from None
 
 
 def _values(file: zipfile.ZipFile, row: int, name: str) -> NDArray[Any]:

@@ -196,7 +196,7 @@ def test_a_dataset_of_another_config_is_not_packed(folder: Path) -> None:
         with pytest.raises(octsim.DatasetError, match=r"focus_scan\.nc: .* \(its scene differ\)"):
             pack(folder, config)
     done = command("archive", folder)
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1
     assert not (folder / "tiny.zip").exists()
 
@@ -245,7 +245,7 @@ def limited(*arguments: str | Path) -> str:
     """Run the command where no file can grow beyond 20 kB; give its one line."""
     line = [sys.executable, "-c", LIMITED, *map(str, arguments)]
     done = subprocess.run(line, capture_output=True, text=True, check=False)
-    assert done.returncode == 1, done.stderr
+    assert done.returncode == 2, done.stderr
     (said,) = done.stderr.splitlines()
     return said
 
@@ -280,7 +280,8 @@ def test_only_into_a_folder_that_is_empty(folder: Path, tmp_path: Path) -> None:
     ("arguments", "said"),
     [
         (("verify", "none.zip"), "none.zip: can't be read (No such file or directory)"),
-        (("verify", "tiny"), "tiny: holds no SHA256SUMS; not an archive of octsim that was"),
+        (("verify", "tiny/none"), "tiny/none: can't be read (No such file or directory)"),
+        (("verify", "."), ".: no datasets and no archive; give one as results/thesis"),
         (("verify", "notes"), "notes: not a zip that is whole"),
         (("unpack", "tiny", "out"), "tiny: is a folder; give an archive's zip"),
         (("unpack", "notes", "out"), "notes: not a zip that is whole"),
@@ -294,7 +295,7 @@ def test_what_cannot_be_done_is_one_line(
 ) -> None:
     (folder.parent / "notes").write_text("mine")
     done = command(*arguments, cwd=folder.parent)
-    assert done.returncode == 1
+    assert done.returncode == 2
     (line,) = done.stderr.splitlines()
     assert line.startswith(f"octsim: {said}")
     assert not (folder.parent / "out").exists()

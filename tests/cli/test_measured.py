@@ -51,7 +51,7 @@ def test_what_can_t_be_read_is_one_line_and_leaves_what_was_there(
     arguments = given(tmp_path)
     (tmp_path / "measured.nc").write_text("mine", encoding="utf-8")
     (tmp_path / "spectra.npy").write_bytes(b"\x93NUMPY\x01\x00")
-    assert main(arguments) == 1
+    assert main(arguments) == 2
     said = capsys.readouterr()
     assert said.err.count("\n") == 1
     assert "spectra.npy" in said.err
@@ -63,6 +63,6 @@ def test_a_file_that_is_read_is_never_written(
 ) -> None:
     arguments = given(tmp_path)
     before = (tmp_path / "spectra.npy").read_bytes()
-    assert main([*arguments[:-1], str(tmp_path / "spectra.npy")]) == 1
+    assert main([*arguments[:-1], str(tmp_path / "spectra.npy")]) == 2
     assert "--output" in capsys.readouterr().err
     assert (tmp_path / "spectra.npy").read_bytes() == before

@@ -238,7 +238,7 @@ FILES: list[tuple[str, dict[str, str], str]] = [
     (
         "wavelength (nm),x\n600,1.4\n",
         {},
-        "has no column of n by its first row, 'wavelength (nm)', 'x'; the headings that are known are wavelength, lambda or wl with its unit, n, n_real or",
+        "has no column of n by its first row, 'wavelength (nm)', 'x'; known are wavelength, lambda or wl with a unit, n, n_real or",
     ),
     (
         "600, 1,4\n950, 1,3\n",

@@ -93,7 +93,10 @@ def test_a_file_of_a_later_octsim_is_refused_with_that(made: Path) -> None:
     [
         ({"schema_version": "soon"}, f"as schema {SCHEMA + 1}"),
         ({"schema_version": float("inf")}, f"as schema {SCHEMA + 1}"),
-        ({"schema_version": 7, "octsim_version": "1\n\x1b[31mX"}, r"octsim 1  \[31mX, as schema"),
+        (
+            {"schema_version": 7, "octsim_version": "1\n\x1b[31mX"},
+            r"octsim 1\\n\\x1b\[31mX, as schema",
+        ),
         ({"config": "[" * 100_000}, "it has no config"),
         ({"stage": [1, 2]}, "not octsim's dataset of the stage focus_scan"),
         ({"config": "{"}, "it has no config"),

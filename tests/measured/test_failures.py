@@ -32,8 +32,8 @@ from recordings import (
 from scipy.io import savemat
 
 from octsim.base.errors import DatasetError, FileError, OctsimError
+from octsim.base.failures import said_in_a_line
 from octsim.measured.open import opened_recording
-from octsim.measured.readers.failures import said_in_a_line
 from octsim.measured.recording import RawForm
 
 Write = Callable[[Path], Any]
@@ -522,7 +522,7 @@ def test_a_socket_is_no_file(tmp_path: Path) -> None:
 
 
 def test_a_name_with_a_byte_0_is_refused() -> None:
-    with pytest.raises(FileError, match=r"^a\\0b: can't be read"), opened_recording("a\0b"):
+    with pytest.raises(FileError, match=r"^a\\x00b: can't be read"), opened_recording("a\0b"):
         pass
 
 

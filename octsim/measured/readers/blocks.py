@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from octsim.measured.readers.failures import said_in_a_line
+from octsim.base.failures import said_in_a_line
 
 Key = tuple[int | slice, ...]
 Block = NDArray[Any]

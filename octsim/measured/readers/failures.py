@@ -1,47 +1,16 @@
-"""What libraries say of damaged files, in one line of this package."""
+"""What an array holds, where it holds no counts, in words."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
-from octsim.base.errors import DatasetError, FileError, OctsimError
-from octsim.base.files import reason
+from octsim.base.errors import DatasetError
 
-_LONGEST = 200
 _OTHERS = {
     "b": "truth values", "c": "complex numbers", "M": "dates", "m": "durations", "O": "objects",
     "S": "text", "T": "text", "U": "text", "V": "records",
 }  # fmt: skip
 """What an array holds that holds no numbers, by the kind of its dtype."""
-
-
-@contextmanager
-def said_in_a_line(name: str, remedy: str) -> Iterator[None]:
-    """Say in one line that something can't be read, whatever a library raises.
-
-    Parameters
-    ----------
-    name : str
-        The file, and what in it is read.
-    remedy : str
-        What to do.
-
-    Raises
-    ------
-    FileError
-        If anything is raised but what the package says itself.
-    """
-    try:
-        yield
-    except (OctsimError, MemoryError):
-        raise
-    # a damaged file makes its library raise what it never says it does: a KeyError, a struct.error
-    except Exception as error:
-        said = reason(error)
-        said = said if len(said) <= _LONGEST else f"{said[: _LONGEST - 3]}..."
-        raise FileError(f"{name}: can't be read ({said}); {remedy}") from error
 
 
 def is_numbers(dtype: np.dtype[Any] | None) -> bool:

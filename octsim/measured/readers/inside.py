@@ -7,8 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from octsim.base.errors import DatasetError
+from octsim.base.failures import said_in_a_line
 from octsim.measured.readers.blocks import Blocks, Sides, Source
-from octsim.measured.readers.failures import is_numbers, require_numbers, said_in_a_line, sizes
+from octsim.measured.readers.failures import is_numbers, require_numbers, sizes
 from octsim.measured.readers.names import AXES, known, last_of, told_as, with_unit
 from octsim.measured.readers.sides import Signs, told
 from octsim.measured.recording import Recording, Values, Wanted
