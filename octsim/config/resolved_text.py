@@ -1,0 +1,44 @@
+"""A whole config as a person reads it: YAML with units, and beside what is set its default."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import yaml
+
+from octsim.config.models import Config
+
+_WIDTH = 100
+
+
+def resolved_lines(config: Config) -> list[str]:
+    """Return a config as lines of YAML that `load_config` reads back to the same config.
+
+    A comment says what the thesis has, where that is something else.
+    """
+    return [*_lines(config.to_dict(), Config().to_dict(), "")]
+
+
+def _lines(data: Mapping[str, Any], default: Any, indent: str) -> Iterator[str]:
+    for key, value in data.items():
+        usual = default.get(key) if isinstance(default, Mapping) else None
+        line = f"{indent}{key}: {_text(value)}"
+        nests = isinstance(value, Mapping) and value
+        if nests and (not indent or len(line) > _WIDTH or _differs_within(value, usual)):
+            yield f"{indent}{key}:"
+            yield from _lines(value, usual, indent + "  ")
+            continue
+        known = isinstance(default, Mapping) and key in default
+        yield f"{line}  # thesis: {_text(usual)}" if known and value != usual else line
+
+
+def _differs_within(value: Mapping[str, Any], usual: Any) -> bool:
+    """Return whether some of a section's own keys are set: then each has a line."""
+    return isinstance(usual, Mapping) and value != usual and value.keys() == usual.keys()
+
+
+def _text(value: Any) -> str:
+    """Write a value as YAML in one line, keys as they come."""
+    text: str = yaml.safe_dump(
+        value, default_flow_style=True, width=10_000, sort_keys=False, allow_unicode=True
+    )
+    return text.removesuffix("...\n").strip()
