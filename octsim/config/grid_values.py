@@ -15,7 +15,8 @@ from octsim.config.derive import config_at, overlap, part_of
 from octsim.config.fields import evenly
 from octsim.config.grid import as_text, axes, combinations, value_at
 from octsim.config.grid_keys import plain_key, require_varied
-from octsim.config.messages import explain, known_keys
+from octsim.config.known_keys import known_keys
+from octsim.config.messages import explain
 from octsim.config.models import Config, Grid
 from octsim.config.units import ANGLE, ATTENUATION, LENGTH, RATIO, Quantity, parse
 

@@ -7,7 +7,8 @@ import numpy as np
 import xarray as xr
 
 from octsim.config.grid import FIXED, Axis, Combination, as_text, value_at
-from octsim.config.messages import known_keys, unit_of
+from octsim.config.known_keys import known_keys
+from octsim.config.messages import unit_of
 from octsim.datasets.variables import MEANINGS
 
 

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from octsim.base.errors import ConfigError, OctsimWarning
 from octsim.config.derive import parts_of
 from octsim.config.grid import remarks
+from octsim.config.known_keys import known_keys
 from octsim.config.load import load_config
-from octsim.config.messages import known_keys
 from octsim.config.models import Config
 from octsim.config.units import format_length, parse_length
 from octsim.schemes.table import PRESETS
