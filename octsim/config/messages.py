@@ -38,10 +38,14 @@ _OF_TWO_KINDS = (
     ["spectrum", "source"],
     ["measured", "axis"],
     ["measured", "dispersion"],
+    ["focus_law", "diameters"],
+    ["sweep", "diameters"],
+    ["calibration", "diameters"],
 )
 _LISTS = (
     "processing.window", "scene.layers", "scene.cylinders", "scene.cylinders.shells",
     "design.fills", "design.apertures", "design.bands",
+    "focus_law.diameters", "sweep.diameters", "calibration.diameters",
 )  # fmt: skip
 
 
@@ -103,6 +107,9 @@ def explain(error: ErrorDetails) -> str:
         message = "it should be diameter, gap, index, thickness or, of a second shell, thickness_2"
     elif path in _FORMS and error["type"] == "model_type":
         message = _FORMS[path]
+    elif error["type"] in {"model_type", "model_attributes_type"} and f"{path}.num" in known_keys():
+        listed_too = ", or a list" if entry in _LISTS else ", as it is evenly spaced"
+        message = f"it should be {{start, stop, num}} or {{start, stop, step}}{listed_too}"
     elif error["type"] in {"model_type", "model_attributes_type"}:
         message = "it should be a mapping of keys to values"
     elif path == "objective.pupil" and error["type"] != "value_error":

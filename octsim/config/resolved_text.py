@@ -5,7 +5,15 @@ from typing import Any
 
 import yaml
 
+from octsim.config.following import (
+    calibration_diameters,
+    fitted_diameters,
+    scan_diameter,
+    scan_foci,
+)
+from octsim.config.grid import combinations, value_at
 from octsim.config.models import Config
+from octsim.config.units import format_length
 
 _WIDTH = 100
 
@@ -13,19 +21,36 @@ _WIDTH = 100
 def resolved_lines(config: Config) -> list[str]:
     """Return a config as lines of YAML that `load_config` reads back to the same config.
 
-    A comment says what the thesis has, where that is something else.
+    A comment says what the thesis has, where that is something else, and what follows the sweep.
     """
-    return [*_lines(config.to_dict(), Config().to_dict(), "")]
+    return [*_lines(config.to_dict(), Config().to_dict(), "", _followed(config))]
 
 
-def _lines(data: Mapping[str, Any], default: Any, indent: str) -> Iterator[str]:
+def _followed(config: Config) -> dict[str, str]:
+    """Return what each key is that follows the sweep, of the first combination of a grid."""
+    first = next(combinations(config)).config
+    every = {
+        "focus_scan.diameter": format_length(scan_diameter(first)),
+        "focus_scan.focus": _text(scan_foci(first).model_dump(mode="json")),
+        "focus_law.diameters": _text(fitted_diameters(first).model_dump(mode="json")),
+        "calibration.diameters": _text(calibration_diameters(first).model_dump(mode="json")),
+    }
+    return {key: text for key, text in every.items() if value_at(first, key) is None}
+
+
+def _lines(
+    data: Mapping[str, Any], default: Any, indent: str, followed: Mapping[str, str], path: str = ""
+) -> Iterator[str]:
     for key, value in data.items():
         usual = default.get(key) if isinstance(default, Mapping) else None
         line = f"{indent}{key}: {_text(value)}"
         nests = isinstance(value, Mapping) and value
         if nests and (not indent or len(line) > _WIDTH or _differs_within(value, usual)):
             yield f"{indent}{key}:"
-            yield from _lines(value, usual, indent + "  ")
+            yield from _lines(value, usual, indent + "  ", followed, f"{path}{key}.")
+            continue
+        if of_sweep := followed.get(f"{path}{key}"):
+            yield f"{line}  # follows the sweep: {of_sweep}"
             continue
         known = isinstance(default, Mapping) and key in default
         yield f"{line}  # thesis: {_text(usual)}" if known and value != usual else line
