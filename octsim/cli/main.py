@@ -10,9 +10,20 @@ from typing import NoReturn
 import octsim
 from octsim.base.errors import OctsimError
 from octsim.base.surroundings import settle
-from octsim.cli import archive, cache, check, compare, completion, init, measured, reproduce, show
+from octsim.cli import (
+    archive,
+    cache,
+    check,
+    compare,
+    completion,
+    init,
+    measured,
+    reproduce,
+    show,
+    stages,
+)
 
-MODULES = (init, check, show, measured, archive, compare, reproduce, cache, completion)
+MODULES = (init, check, show, measured, stages, archive, compare, reproduce, cache, completion)
 """Each adds commands of its own, and imports what does their work when one is asked for."""
 
 

@@ -208,6 +208,13 @@ class Config(Section):
     def _lab_pixels(cls, data: Any) -> Any:
         return with_lab_pixels(data)
 
+    def __repr__(self) -> str:
+        from octsim.config.resolved_text import differing  # here, as that is of configs
+
+        return f"octsim.load_config({differing(self) or ''})"
+
+    __str__ = __repr__
+
     @property
     def pupil(self) -> GaussianFill | FibreMode | Literal["uniform"]:
         """How light fills the pupil, of a plain config: as given, or the scheme's own way."""

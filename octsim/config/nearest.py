@@ -44,7 +44,6 @@ _ALIASES: Mapping[str, tuple[str, ...]] = {
     "name": ("run",),
     "neurons": ("scene.cylinders",),
     "number": ("num",),
-    "pixels": ("spectrum.samples",),
     "points": ("num", "spectrum.samples"),
     "pupil_fill": ("objective.pupil",),
     "range": ("sweep.diameters",),

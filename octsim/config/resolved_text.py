@@ -67,3 +67,20 @@ def _text(value: Any) -> str:
         value, default_flow_style=True, width=10_000, sort_keys=False, allow_unicode=True
     )
     return text.removesuffix("...\n").strip()
+
+
+def differing(config: Config) -> dict[str, Any]:
+    """Return what of a config is not as the thesis has it, as plain data of its own shape."""
+    return _differing(config.to_dict(), Config().to_dict())
+
+
+def _differing(data: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for key, value in data.items():
+        other = usual.get(key)
+        if isinstance(value, Mapping) and isinstance(other, Mapping):
+            if within := _differing(value, other):
+                found[key] = within
+        elif value != other:
+            found[key] = value
+    return found

@@ -27,7 +27,6 @@ from octsim.config.nearest import nearest_key, nearest_value
         ("spectrum.wavelength.start", "spectrum.wavelength.min"),
         ("spectrum.band", "spectrum.wavelength"),
         ("spectrum.wavelengths", "spectrum.wavelength"),
-        ("spectrum.pixels", "spectrum.samples"),
         ("processing.FFT", "processing.estimator"),
         ("processing.method", "processing.estimator"),
         ("tracing.method", "tracing.scheme"),

@@ -10,6 +10,7 @@ from scipy.interpolate import CubicSpline
 from octsim.base.threads import each
 from octsim.config.derive import by_rays, calibrating
 from octsim.config.following import calibration_diameters
+from octsim.config.given import taking_config
 from octsim.config.maxwell import beyond_maxwell
 from octsim.config.models import Config
 from octsim.config.processing import Processing
@@ -44,6 +45,7 @@ def by_fft(config: Config) -> Processing:
     return config.processing.model_copy(update={"estimator": "fft"})
 
 
+@taking_config
 def calibration(
     config: Config,
     law: xr.Dataset | None = None,
