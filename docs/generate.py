@@ -82,8 +82,10 @@ Written by `make docs` from `octsim/config/models.py`; do not edit.
 
 A file of yours holds only what differs from the defaults. Mappings merge deeply, everything else
 replaces. Lengths are text with their unit (`5 nm`, `1.4 um`, `0.3 mm`); ranges are
-`{{start, stop, num}}`, evenly spaced, both ends included. `config/schema.json` is the same as a
-JSON Schema, with the limits of each value, for editors.
+`{{start, stop, num}}` or `{{start, stop, step}}`, evenly spaced, both ends included; the diameters
+of sweep, focus law and calibration may also be a list, as `[1 um, 1.2 um, 1.5 um]`. Where null is
+of the sweep, one range serves all: `octsim init` writes such a config. `config/schema.json` is the
+same as a JSON Schema, with the limits of each value, for editors.
 
 {keys}
 `sweep.focus` is `law`, the line fitted through the focus law's points, or a line of your own as

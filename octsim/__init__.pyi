@@ -20,6 +20,7 @@ from .stages.focus_scan import focus_scan as focus_scan
 from .stages.focus_sweep import focus_sweep as focus_sweep
 from .stages.fourier import fourier as fourier
 from .stages.gaussian_fits import gaussian_fits as gaussian_fits
+from .stages.in_memory import run as run
 from .stages.paths import light_paths as light_paths
 from .stages.phase_slope import phase_slope as phase_slope
 from .stages.ray_focus_sweep import ray_focus_sweep as ray_focus_sweep

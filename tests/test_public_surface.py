@@ -10,7 +10,8 @@ PUBLIC = [
     "OctsimError", "OctsimWarning", "action_potential", "calibration", "combinations", "compare",
     "detections", "expansion", "fields", "focus_law", "focus_scan", "focus_sweep", "fourier",
     "gaussian_fits", "light_paths", "load_config", "phase_of", "phase_slope",
-    "ray_focus_sweep", "read", "read_series", "read_spectra", "series_expansion", "spectra",
+    "ray_focus_sweep", "read", "read_series", "read_spectra", "run", "series_expansion",
+    "spectra",
 ]  # fmt: skip
 COMPUTING = {"numpy", "scipy", "numba", "xarray", "netCDF4", "matplotlib", "pandas"}
 

@@ -8,11 +8,23 @@ from argparse import Namespace
 from collections.abc import Callable, Sequence
 from typing import NoReturn
 
+import octsim
 from octsim.base.errors import OctsimError, OctsimWarning
 from octsim.base.surroundings import settle
-from octsim.cli import archive, cache, compare, measured, reproduce
+from octsim.cli import (
+    archive,
+    cache,
+    check,
+    compare,
+    completion,
+    init,
+    measured,
+    reproduce,
+    show,
+    stages,
+)
 
-MODULES = (measured, archive, compare, reproduce, cache)
+MODULES = (init, check, show, measured, stages, archive, compare, reproduce, cache, completion)
 """Each adds commands of its own, and imports what does their work when one is asked for."""
 
 
@@ -39,6 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments is None:
         settle()
     parser = Parser(prog="octsim", description="Ray tracing of OCT of a neuron.")
+    parser.add_argument("--version", action="version", version=f"octsim {octsim.__version__}")
     commands = parser.add_subparsers(required=True, metavar="command")
     for module in MODULES:
         module.add(commands)

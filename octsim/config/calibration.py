@@ -11,7 +11,6 @@ from octsim.config.fields import (
     NumberTolerance,
     PositiveLength,
     Section,
-    TableRange,
     Tolerance,
     Wavelength,
     absent,
@@ -20,6 +19,7 @@ from octsim.config.fields import (
     number,
 )
 from octsim.config.processing import PhaseEstimator
+from octsim.config.ranges import TableDiameters
 from octsim.config.units import ANGLE, ATTENUATION, LENGTH, Angle, Length, parse
 from octsim.schemes.table import FULL_WAVE, LIGHT_PATHS
 
@@ -104,8 +104,9 @@ class Tolerances(Section):
 class Calibration(Section):
     """From a phase to nanometres, at a fixed focus and gap."""
 
-    diameters: TableRange = key(
-        {"start": "1 um", "stop": "2 um", "num": 51}, "of the neuron at rest"
+    diameters: TableDiameters | None = key(
+        {"start": "1 um", "stop": "2 um", "num": 51},
+        "of the neuron at rest; null is the sweep's range, 20 nm apart at most",
     )
     step: Annotated[Length, Field(ge=1e-6, le=1e-2)] = key(
         "0.1 nm", "of the diameter, to each side, over which the phase is differentiated"

@@ -8,9 +8,10 @@ from pydantic import BaseModel
 
 from octsim.base.errors import ConfigError
 from octsim.config.abilities import beyond_scheme
-from octsim.config.fields import DECIMALS, Range
+from octsim.config.following import fitted_diameters, scan_foci
 from octsim.config.likely import light_remarks
 from octsim.config.models import Config, FocusLine
+from octsim.config.ranges import DECIMALS, Range
 from octsim.config.scene_checks import diameters_of, impossible_scene, least_index, scene_remarks
 from octsim.config.source import unlit
 from octsim.config.tree import impossible_tree
@@ -39,13 +40,14 @@ def _ranges(model: BaseModel, prefix: str = "") -> Iterator[tuple[str, Range]]:
 
 def highest_focus(config: Config) -> tuple[str, float]:
     """Return the key that asks for the highest focus known before a run, and that focus in µm."""
-    law = config.focus_law
+    fitted = fitted_diameters(config)
     # corners suffice: a product of two ranges is greatest at one
     corners = itertools.product(
-        (law.diameters.start, law.diameters.stop), (law.fraction.start, law.fraction.stop)
+        (fitted.start, fitted.stop),
+        (config.focus_law.fraction.start, config.focus_law.fraction.stop),
     )
     foci = {
-        "focus_scan.focus.stop": config.focus_scan.focus.stop,
+        "focus_scan.focus.stop": scan_foci(config).stop,
         "focus_law.fraction.stop": max(map(math.prod, corners)),
     }
     if isinstance(config.sweep.focus, FocusLine):
@@ -217,7 +219,7 @@ def plain_remarks(config: Config) -> list[str]:
     said += light_remarks(config)
     band, diameters = config.spectrum.wavelength, config.sweep.diameters
     k_min, k_max = 2 * math.pi / band.max, 2 * math.pi / band.min
-    step = (diameters.stop - diameters.start) / (diameters.num - 1)
+    step = diameters.largest_step
     largest = aliasing_step(config.swept_material, k_min, k_max)
     if step > largest:
         said.append(
@@ -239,7 +241,7 @@ def plain_remarks(config: Config) -> list[str]:
             f"spectrum.samples: {config.spectrum.samples} do not resolve the oscillations of the "
             f"largest diameter; give {needed} or more"
         )
-    fitted = config.focus_law.diameters
+    fitted = fitted_diameters(config)
     beyond = diameters.start < fitted.start or diameters.stop > fitted.stop
     if config.sweep.focus == "law" and beyond:
         said.append(

@@ -67,9 +67,16 @@ def nested(key: str, value: object) -> dict[str, Any]:
 def merge(base: Mapping[str, Any], overlay: Mapping[str, Any]) -> dict[str, Any]:
     """Lay one mapping over another: mappings merge deeply, everything else replaces.
 
-    Of a list, a mapping from places in it, as text, replaces entries, or parts of them.
+    Of a list, a mapping from places in it, as text, replaces entries, or parts of them; and of a
+    range, a number of values the step between them, or the step the number.
     """
-    return {**base, **{key: _laid(base.get(key), value) for key, value in overlay.items()}}
+    replaced = {_INSTEAD[key] for key in overlay if key in _INSTEAD}
+    kept = {key: value for key, value in base.items() if key not in replaced - overlay.keys()}
+    return {**kept, **{key: _laid(base.get(key), value) for key, value in overlay.items()}}
+
+
+_INSTEAD = {"num": "step", "step": "num"}
+"""What of a range replaces what."""
 
 
 def _laid(below: Any, value: Any) -> Any:

@@ -5,8 +5,6 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, BeforeValidator, Field
 
 from octsim.config.fields import (
-    DiameterRange,
-    FocusRange,
     Number,
     PositiveNumber,
     Section,
@@ -14,6 +12,7 @@ from octsim.config.fields import (
     as_tuple,
     key,
 )
+from octsim.config.ranges import DiameterRange, FocusRange
 from octsim.config.units import Length
 
 

@@ -1,17 +1,13 @@
-"""What the config's sections are made of: numbers, lengths and ranges with their limits."""
+"""What the config's sections are made of: numbers and lengths with their limits."""
 
 from collections.abc import Mapping, Sequence
 from datetime import date
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import yaml
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from octsim.config.units import Length
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 
 def number(value: object) -> object:
@@ -85,64 +81,10 @@ NumberTolerance = Annotated[Number, Field(ge=0, le=1)]
 Index = Annotated[Number, Field(ge=1, le=10)]
 
 
-DECIMALS = 12
-"""Of a micrometre, to which evenly spaced values are rounded: an attometre."""
-
-
 class Section(BaseModel):
     """A part of the config: frozen, with no room for keys that it does not know."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, validate_default=True)
-
-
-def evenly(start: float, stop: float, num: int) -> "NDArray[np.float64]":
-    """Return evenly spaced values, shape (num,), both ends included.
-
-    They are rounded far below a femtometre: a value that two ranges share has the same bits.
-    """
-    import numpy as np  # here, as reading a config takes half as long without
-
-    return np.round(np.linspace(start, stop, num), DECIMALS)
-
-
-class Range(Section):
-    """Evenly spaced values, both ends included; start is below stop."""
-
-    start: float
-    stop: float
-    num: Annotated[int, Field(ge=2, le=1_000_000)]
-
-    def values(self) -> "NDArray[np.float64]":
-        """Return the values, shape (num,), in µm where they are lengths."""
-        return evenly(self.start, self.stop, self.num)
-
-
-class FocusRange(Range):
-    """Evenly spaced heights of the focus."""
-
-    start: Position
-    stop: Position
-
-
-class DiameterRange(Range):
-    """Evenly spaced diameters."""
-
-    start: PositiveLength
-    stop: PositiveLength
-
-
-class TableRange(DiameterRange):
-    """Evenly spaced diameters, enough to interpolate between."""
-
-    num: Annotated[int, Field(ge=8, le=1_000_000)]
-
-
-class FractionRange(Range):
-    """Evenly spaced fractions of a diameter, enough to fit a Gaussian plus a constant over."""
-
-    start: Annotated[Number, Field(ge=-1e6, le=1e6)]
-    stop: Annotated[Number, Field(ge=-1e6, le=1e6)]
-    num: Annotated[int, Field(ge=4, le=1_000_000)]
 
 
 def key(default: object, description: str) -> Any:

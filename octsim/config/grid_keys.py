@@ -2,8 +2,9 @@
 
 from octsim.base.errors import ConfigError
 from octsim.config.effects import zernike_number
-from octsim.config.messages import known_keys, nearest_key
+from octsim.config.known_keys import known_keys
 from octsim.config.models import FIXED, Config
+from octsim.config.nearest import nearest_key
 
 _ZERNIKE = "objective.zernike."
 _ATTENUATION = "scene.attenuation."

@@ -12,15 +12,17 @@ from pydantic import ValidationError
 from octsim.base.errors import ConfigError
 from octsim.config.checks import impossible
 from octsim.config.derive import config_at, overlap, part_of
-from octsim.config.fields import evenly
 from octsim.config.grid import as_text, axes, combinations, value_at
 from octsim.config.grid_keys import plain_key, require_varied
-from octsim.config.messages import explain, known_keys
+from octsim.config.known_keys import known_keys
+from octsim.config.messages import explain
 from octsim.config.models import Config, Grid
+from octsim.config.ranges import counted, evenly
 from octsim.config.units import ANGLE, ATTENUATION, LENGTH, RATIO, Quantity, parse
 
 MOST = 100_000
 """Combinations of one grid."""
+_RANGES = ({"start", "stop", "num"}, {"start", "stop", "step"})
 _SHOWN = 5  # problems of combinations that are listed
 
 
@@ -90,7 +92,7 @@ def _listed(config: Config, key: str, given: Any) -> list[Any]:
         if not given:
             raise ConfigError(f"grid.{key}: [] given; list one value or more")
         return list(given)
-    if isinstance(given, Mapping) and set(given) == {"start", "stop", "num"}:
+    if isinstance(given, Mapping) and set(given) in _RANGES:
         if f"{key}.num" in known:
             raise ConfigError(
                 f"grid.{key}: {dict(given)} given, but it is itself a range: vary {key}.num, or "
@@ -104,7 +106,8 @@ def _listed(config: Config, key: str, given: Any) -> list[Any]:
         )
     if isinstance(given, Mapping) and {"start", "stop"} & set(given):
         raise ConfigError(
-            f"grid.{key}: {dict(given)} given; a range has start, stop and num, and nothing else"
+            f"grid.{key}: {dict(given)} given; a range has start, stop and num or step, and "
+            "nothing else"
         )
     raise ConfigError(
         f"grid.{key}: {given!r} given; it should be a list of values, or a range "
@@ -113,11 +116,9 @@ def _listed(config: Config, key: str, given: Any) -> list[Any]:
 
 
 def _spaced(key: str, given: Mapping[str, Any]) -> list[Any]:
-    ends, num = [given["start"], given["stop"]], given["num"]
+    ends = [given["start"], given["stop"]]
     if any(isinstance(end, bool) for end in ends):
         raise ConfigError(f"grid.{key}: {dict(given)} given; both ends should be numbers")
-    if not isinstance(num, int) or isinstance(num, bool) or not 2 <= num <= MOST:
-        raise ConfigError(f"grid.{key}.num: {num!r} given; a range has 2 to {MOST} values")
     quantity = _quantity(ends)
     try:
         start, stop = [parse(quantity, end) if quantity else float(end) for end in ends]
@@ -131,6 +132,7 @@ def _spaced(key: str, given: Mapping[str, Any]) -> list[Any]:
             f"grid.{key}.start: {ends[0]} given; it must be below grid.{key}.stop = {ends[1]}, "
             "or the range is empty"
         )
+    num = _number_of(key, given, quantity, start, stop)
     values: list[float] = evenly(start, stop, num).tolist()
     if quantity:
         return [f"{value!r} {quantity.unit}" for value in values]
@@ -142,6 +144,26 @@ def _spaced(key: str, given: Mapping[str, Any]) -> list[Any]:
             "a num that divides the range, or list them"
         )
     return [int(value) if value.is_integer() else value for value in values]
+
+
+def _number_of(
+    key: str, given: Mapping[str, Any], quantity: Quantity | None, start: float, stop: float
+) -> int:
+    """Return how many values a range has."""
+    num = given.get("num")
+    if "step" in given:
+        step = given["step"]
+        try:
+            num = (
+                counted(start, stop, parse(quantity, step), quantity.unit)
+                if quantity
+                else counted(start, stop, float(step), "")
+            )
+        except (TypeError, ValueError) as error:
+            raise ConfigError(f"grid.{key}: {dict(given)} given; step: {error}") from None
+    if not isinstance(num, int) or isinstance(num, bool) or not 2 <= num <= MOST:
+        raise ConfigError(f"grid.{key}.num: {num!r} given; a range has 2 to {MOST} values")
+    return num
 
 
 def _quantity(ends: list[Any]) -> Quantity | None:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from octsim.config.effects import zernike_name
+from octsim.config.following import fitted_diameters
 from octsim.config.models import Config
 from octsim.config.source import dim
 from octsim.schemes.table import SCHEMES
@@ -113,7 +114,7 @@ def _reference_arm(config: Config) -> Iterator[str]:
 def _thicknesses(config: Config) -> Iterator[tuple[str, float, str]]:
     """Return media, and the most that light passes of each, µm, and what that is of."""
     scene = config.scene
-    largest = max(config.sweep.diameters.stop, config.focus_law.diameters.stop)
+    largest = max(config.sweep.diameters.stop, fitted_diameters(config).stop)
     yield scene.swept_medium, largest, "the largest swept thickness"
     yield scene.objective_medium, config.objective.focus_distance, "objective.focus_distance"
     for layer in scene.layers[1:-1]:

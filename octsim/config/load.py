@@ -25,12 +25,15 @@ class _Loader(yaml.SafeLoader):
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         merge = "tag:yaml.org,2002:merge"  # `<<`, which may well stand beside what it brings
-        keys = [self.construct_object(key, True) for key, _ in node.value if key.tag != merge]
-        for key in keys:
-            if keys.count(key) > 1:
+        lines: dict[Any, int] = {}
+        for own in (key for key, _ in node.value if key.tag != merge):
+            key, line = self.construct_object(own, True), own.start_mark.line + 1
+            if key in lines:
+                before = f"first in line {lines[key]}; keep one of them"
                 raise yaml.constructor.ConstructorError(
-                    None, None, f"the key '{key}' stands twice", node.start_mark
+                    None, None, f"the key '{key}' stands twice, {before}", own.start_mark
                 )
+            lines[key] = line
         return super().construct_mapping(node, deep)
 
 

@@ -2,91 +2,27 @@
 
 import difflib
 import re
-from collections.abc import Iterator, Mapping
 from typing import Any
 
-from pydantic import BaseModel
 from pydantic_core import ErrorDetails
 
-from octsim.config.archive import Creator
 from octsim.config.calibration import Tolerances
 from octsim.config.dispersion import TAGS
 from octsim.config.effects import (
     FOCAL_SHIFT_FORM,
     REFERENCE_FORM,
-    FocalShiftConfig,
-    ReferenceArmConfig,
     zernike_name,
 )
 from octsim.config.fields import as_text
+from octsim.config.known_keys import known_keys, of_any_entry
 from octsim.config.light import PUPIL_FORM
-from octsim.config.models import FIXED, Config, FocusLine, Grid
-from octsim.config.scene import Layer, Shell
+from octsim.config.models import FIXED, Config
+from octsim.config.nearest import nearest_key, nearest_value
 from octsim.config.units import ANGLE, ATTENUATION, LENGTH
 from octsim.config.wording import message_of
 
-
-def known_keys(model: type[BaseModel] | BaseModel = Config, prefix: str = "") -> Iterator[str]:
-    """Return the dotted path of every key of the config, sections before what they hold."""
-    model = model() if isinstance(model, type) else model
-    # of a grid, what is varied stands under keys of their own
-    free = () if isinstance(model, Grid) else model.model_extra or ()
-    for name in (*type(model).model_fields, *free):
-        yield prefix + name
-        value = getattr(model, name)
-        for place, part in enumerate(value if isinstance(value, tuple) else ()):
-            if isinstance(part, BaseModel):
-                yield f"{prefix}{name}.{place}"
-                if isinstance(part, Layer) and part.thickness is None:
-                    continue  # it is written as its name alone
-                yield from known_keys(part, f"{prefix}{name}.{place}.")
-        if isinstance(value, BaseModel):
-            yield from known_keys(value, f"{prefix}{name}.")
-    if isinstance(model, Config):
-        yield from (f"sweep.focus.{name}" for name in FocusLine.model_fields)
-        yield from (f"archive.creators.{name}" for name in Creator.model_fields)
-        yield from ("objective.pupil.gaussian", "objective.pupil.fibre")
-        yield from _of_section("objective.focal_shift", model.objective.focal_shift)
-        yield from _of_section("interferometer.reference", model.interferometer.reference)
-
-
-_OPTIONAL_SECTIONS: Mapping[str, type[BaseModel]] = {
-    "objective.focal_shift": FocalShiftConfig, "interferometer.reference": ReferenceArmConfig,
-}  # fmt: skip
 _FORMS = {"objective.focal_shift": FOCAL_SHIFT_FORM, "interferometer.reference": REFERENCE_FORM}
 """What stands there, where it is no mapping or unknown."""
-
-
-def _of_section(key: str, given: BaseModel | None) -> Iterator[str]:
-    """Return the keys of a section that is not there by default, if it is not given."""
-    if given is None:
-        yield from (f"{key}.{name}" for name in _OPTIONAL_SECTIONS[key].model_fields)
-
-
-def _of_any_entry(key: str) -> str:
-    return ".".join(part for part in key.split(".") if not part.isdigit())
-
-
-_IN_LISTS = (
-    *(f"scene.layers.{name}" for name in Layer.model_fields),
-    *(f"scene.cylinders.shells.{name}" for name in Shell.model_fields),
-)
-"""Keys in lists that may be empty, of any of their entries."""
-
-
-def nearest_key(key: str) -> str:
-    """Return the known key that is most like `key`: in its own section, else by its last part."""
-    section, _, name = key.rpartition(".")
-    keys = [*dict.fromkeys(map(_of_any_entry, known_keys())), *_IN_LISTS]
-    siblings = {k.rpartition(".")[2]: k for k in keys if k.rpartition(".")[0] == section}
-    everywhere = {k.rpartition(".")[2]: k for k in reversed(keys)}
-    initials = {"".join(word[0] for word in k.split("_")): path for k, path in siblings.items()}
-    for candidates, likeness in ((initials, 1), (siblings, 0.6), (everywhere, 0.6), (siblings, 0)):
-        close = difflib.get_close_matches(name, candidates, n=1, cutoff=likeness)
-        if close:
-            return candidates[close[0]]
-    return difflib.get_close_matches(key, keys, n=1, cutoff=0)[0]
-
 
 _OF_DISPERSIONS = (
     "cauchy", "sellmeier", "table", "unit", "B", "C", "wavelength", "n", "kappa",
@@ -102,10 +38,14 @@ _OF_TWO_KINDS = (
     ["spectrum", "source"],
     ["measured", "axis"],
     ["measured", "dispersion"],
+    ["focus_law", "diameters"],
+    ["sweep", "diameters"],
+    ["calibration", "diameters"],
 )
 _LISTS = (
     "processing.window", "scene.layers", "scene.cylinders", "scene.cylinders.shells",
     "design.fills", "design.apertures", "design.bands",
+    "focus_law.diameters", "sweep.diameters", "calibration.diameters",
 )  # fmt: skip
 
 
@@ -118,7 +58,7 @@ def explain(error: ErrorDetails) -> str:
     if of_index and len(place) > 3 and place[3] in TAGS:
         del place[3]
     path = ".".join(place)
-    entry = _of_any_entry(path)
+    entry = of_any_entry(path)
     listed = isinstance(error["input"], list | tuple) and error["type"] != "model_type"
     varies = listed and place[0] not in FIXED  # of which a run has one
     key = next((name for name in (place[-1], path) if name in set(known_keys())), None)
@@ -167,6 +107,9 @@ def explain(error: ErrorDetails) -> str:
         message = "it should be diameter, gap, index, thickness or, of a second shell, thickness_2"
     elif path in _FORMS and error["type"] == "model_type":
         message = _FORMS[path]
+    elif error["type"] in {"model_type", "model_attributes_type"} and f"{path}.num" in known_keys():
+        listed_too = ", or a list" if entry in _LISTS else ", as it is evenly spaced"
+        message = f"it should be {{start, stop, num}} or {{start, stop, step}}{listed_too}"
     elif error["type"] in {"model_type", "model_attributes_type"}:
         message = "it should be a mapping of keys to values"
     elif path == "objective.pupil" and error["type"] != "value_error":
@@ -179,7 +122,7 @@ def explain(error: ErrorDetails) -> str:
         )
     elif error["type"] == "literal_error" and isinstance(error["input"], str):
         known = re.findall(r"'([^']+)'", message)
-        nearest = difflib.get_close_matches(error["input"], known, n=1, cutoff=0)[0]
+        nearest = nearest_value(error["input"], known)
         message = f"the nearest that is known is '{nearest}'; {message}"
     elif error["type"] in {"int_type", "float_type"} and isinstance(error["input"], str):
         whole = " whole" if error["type"] == "int_type" else ""
@@ -207,7 +150,7 @@ def _shown(value: object) -> str:
 
 def unit_of(key: str) -> str:
     """Return the unit of a key of the config: um of a length, rad of an angle, else 1."""
-    entry = _of_any_entry(key)
+    entry = of_any_entry(key)
     if entry.startswith("scene.attenuation."):
         return ATTENUATION.unit
     if entry in _WITHOUT_DEFAULT:

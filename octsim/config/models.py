@@ -14,9 +14,6 @@ from octsim.config.calibration import ActionPotential, Calibration, ExpansionCon
 from octsim.config.design import Design
 from octsim.config.effects import BeamConfig, DetectorConfig, Interferometer
 from octsim.config.fields import (
-    DiameterRange,
-    FocusRange,
-    FractionRange,
     Number,
     Position,
     PositiveLength,
@@ -28,6 +25,7 @@ from octsim.config.light import Objective as Objective
 from octsim.config.measured import Measured as Measured
 from octsim.config.pixels import with_lab_pixels
 from octsim.config.processing import Processing as Processing
+from octsim.config.ranges import Diameters, FocusRange, FractionRange
 from octsim.config.resources import Budget, Scatter
 from octsim.config.resources import Cache as Cache
 from octsim.config.responses import Responses
@@ -74,18 +72,19 @@ class Tracing(Section):
 class FocusScan(Section):
     """Figure 6: one diameter, many foci."""
 
-    diameter: PositiveLength = _key("2 um", "of the cylinder")
-    focus: FocusRange = _key(
+    diameter: PositiveLength | None = _key("2 um", "of the cylinder; null is the sweep's middle")
+    focus: FocusRange | None = _key(
         {"start": "-1 um", "stop": "4 um", "num": 501},
-        "height of the focus above the glass",
+        "height of the focus above the glass; null is from -0.5 to 2 diameters",
     )
 
 
 class FocusLawConfig(Section):
     """Figure 7: the focus of greatest intensity for some diameters, and the line through them."""
 
-    diameters: DiameterRange = _key(
-        {"start": "0.8 um", "stop": "2.4 um", "num": 9}, "of the cylinder"
+    diameters: Diameters | None = _key(
+        {"start": "0.8 um", "stop": "2.4 um", "num": 9},
+        "of the cylinder; null is the sweep's range, 9 or more that are 0.2 um apart at most",
     )
     fraction: FractionRange = _key(
         {"start": 0.4, "stop": 0.8, "num": 41},
@@ -119,9 +118,7 @@ def _focus_kind(value: object) -> str:
 class Sweep(Section):
     """Figures 8 to 12: the diameters whose spectra are made."""
 
-    diameters: DiameterRange = _key(
-        {"start": "1 um", "stop": "2 um", "num": 151}, "of the cylinder"
-    )
+    diameters: Diameters = _key({"start": "1 um", "stop": "2 um", "num": 151}, "of the cylinder")
     focus: Annotated[
         Annotated[Literal["law"], Tag("law")] | Annotated[FocusLine, Tag("line")],
         Discriminator(_focus_kind),
@@ -210,6 +207,13 @@ class Config(Section):
     @classmethod
     def _lab_pixels(cls, data: Any) -> Any:
         return with_lab_pixels(data)
+
+    def __repr__(self) -> str:
+        from octsim.config.resolved_text import differing  # here, as that is of configs
+
+        return f"octsim.load_config({differing(self) or ''})"
+
+    __str__ = __repr__
 
     @property
     def pupil(self) -> GaussianFill | FibreMode | Literal["uniform"]:

@@ -1,6 +1,7 @@
 """The section of the config for what moves a phase besides a diameter (`snakemake responses`)."""
 
-from octsim.config.fields import DiameterRange, Index, PositiveLength, Section, key
+from octsim.config.fields import Index, PositiveLength, Section, key
+from octsim.config.ranges import DiameterRange
 
 
 class Membrane(Section):

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from octsim.config.dispersion import described, material_of, span_of
 from octsim.config.dispersion_forms import TableIndex
+from octsim.config.following import fitted_diameters, scan_diameter
 from octsim.config.models import Config
 from octsim.config.scene import SWEPT, CylinderConfig, SceneConfig
 from octsim.config.units import format_length
@@ -167,11 +168,11 @@ class _Body(NamedTuple):
 
 def diameters_of(config: Config) -> dict[str, float]:
     """Return the diameters between which a run's are, µm, by the keys that ask for them."""
-    sweep, law = config.sweep.diameters, config.focus_law.diameters
+    sweep, law = config.sweep.diameters, fitted_diameters(config)
     return {
         "sweep.diameters.start": sweep.start, "sweep.diameters.stop": sweep.stop,
         "focus_law.diameters.start": law.start, "focus_law.diameters.stop": law.stop,
-        "focus_scan.diameter": config.focus_scan.diameter,
+        "focus_scan.diameter": scan_diameter(config),
     }  # fmt: skip
 
 
@@ -266,7 +267,7 @@ def scene_remarks(config: Config) -> Iterator[str]:
 
 
 def _met(config: Config, key: str, cylinder: CylinderConfig) -> str:
-    radius = (cylinder.diameter or config.focus_scan.diameter) / 2
+    radius = (cylinder.diameter or scan_diameter(config)) / 2
     lift = abs(math.tan(cylinder.elevation))
     below = config.scene.gap_of(cylinder) + radius - radius / math.cos(cylinder.elevation)
     return (

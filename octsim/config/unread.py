@@ -7,7 +7,7 @@ from octsim.config.derive import merge
 from octsim.config.effects import DetectorConfig
 from octsim.config.fields import number
 from octsim.config.grid import as_text, combinations, value_at
-from octsim.config.messages import known_keys
+from octsim.config.known_keys import known_keys
 from octsim.config.models import Config
 from octsim.config.processing import OPTIONS, Processing, Sinusoid, options_read
 from octsim.schemes.table import COUNTED_RAYS, PRESETS, SCHEMES

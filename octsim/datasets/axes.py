@@ -5,15 +5,23 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from octsim.config.grid import FIXED, Axis, Combination, as_text, value_at
-from octsim.config.messages import known_keys, unit_of
+from octsim.config.known_keys import known_keys
+from octsim.config.messages import unit_of
 from octsim.datasets.variables import MEANINGS
 
 
 def axis_name(axis: Axis) -> str:
     """Return the name of an axis' dimension: that of its key, or combination of zipped ones."""
     return dimension_name(axis.keys[0]) if not axis.zipped else "combination"
+
+
+def wavelengths(wavenumber: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the wavelengths of wavenumbers, µm, in vacuum, of their shape."""
+    lengths: NDArray[np.float64] = 2 * np.pi / wavenumber
+    return lengths
 
 
 @cache

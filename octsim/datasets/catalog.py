@@ -11,6 +11,7 @@ digests, the axes of a grid, the archive and the command line all read this tabl
 
 from collections.abc import Mapping
 
+from octsim.config.following import fitted_diameters, scan_foci
 from octsim.config.models import Config
 from octsim.datasets.catalog_of_neurons import CALIBRATED, COMPARED, OF_NEURONS
 from octsim.datasets.catalog_of_thesis import OF_THE_THESIS
@@ -28,7 +29,7 @@ _RUN = (
         "focus_scan", "octsim.stages.focus_scan:focus_scan",
         "Scan the focus for one diameter",
         reads=(LIGHT, *COUNTED, "spectrum", "focus_scan"),
-        points=lambda config: (config.focus_scan.focus.num, 1),
+        points=lambda config: (scan_foci(config).num, 1),
         figures=(
             Figure("figure_6", "octsim.figures.focus_scan:figure_6",
                    "detected rays and intensity over the focus"),
@@ -39,7 +40,7 @@ _RUN = (
         "Measure the intensity over the focus for the diameters of the focus law",
         reads=(LIGHT, "spectrum", "focus_law"),
         # a diameter's foci are one row of the dataset
-        points=lambda config: (config.focus_law.diameters.num, config.focus_law.fraction.num),
+        points=lambda config: (fitted_diameters(config).num, config.focus_law.fraction.num),
     ),
     Stage(
         "gaussian_fits", "octsim.stages.gaussian_fits:gaussian_fits",
@@ -52,7 +53,7 @@ _RUN = (
         "Measure the intensity over the focus by light paths too",
         reads=(RAYS, "spectrum", "focus_law"),
         points=lambda config: (
-            _rows("waves", config, config.focus_law.diameters.num), config.focus_law.fraction.num
+            _rows("waves", config, fitted_diameters(config).num), config.focus_law.fraction.num
         ),
         light="waves",
     ),

@@ -21,6 +21,8 @@ from octsim.base.file_digest import add_digest, require_undamaged
 from octsim.base.files import require_regular, whole
 from octsim.base.provenance import environment
 from octsim.config.models import Config
+from octsim.datasets.axes import wavelengths
+from octsim.datasets.catalog import CATALOG
 from octsim.datasets.code import code_of
 from octsim.datasets.keys import differing
 from octsim.datasets.variables import meaning
@@ -51,11 +53,19 @@ def make(
     variables, coordinates : mapping
         As `xarray.Dataset` takes them; each name has its entry in `MEANINGS`.
     """
-    dataset = xr.Dataset(variables, coordinates)
+    dataset = with_wavelength(xr.Dataset(variables, coordinates))
     for name in map(str, dataset.variables):
         dataset[name].attrs = meaning(name) | dataset[name].attrs
     dataset.attrs = attributes(stage, config, title)
     return dataset
+
+
+def with_wavelength(dataset: xr.Dataset) -> xr.Dataset:
+    """Return a dataset that has the wavelength beside its wavenumber, where it has that."""
+    if "wavenumber" not in dataset.coords or "wavelength" in dataset.coords:
+        return dataset
+    k = dataset["wavenumber"]
+    return dataset.assign_coords(wavelength=(k.dims, wavelengths(k.values), meaning("wavelength")))
 
 
 def attributes(stage: str, config: Config, title: str) -> dict[str, Any]:
@@ -63,6 +73,10 @@ def attributes(stage: str, config: Config, title: str) -> dict[str, Any]:
     return {
         "Conventions": "CF-1.11",
         "title": title,
+        "summary": f"{title}; of simulated optical coherence tomography of a neuron",
+        "history": f"octsim {version('octsim')}: stage {stage} of the run {config.run}",
+        "license": "as the config's archive.license says when the run is packed",
+        "references": "cite octsim as its CITATION.cff says; docs/physics.md has the equations",
         "stage": stage,
         "schema_version": SCHEMA,
         "config": json.dumps(config.to_record()),
@@ -189,6 +203,9 @@ def _say_unchecked(folder: Path) -> None:
 
 
 def _remedy(path: Path) -> str:
+    if path.stem not in CATALOG:
+        # of a file of the user's, which is in nobody's way
+        return "give a dataset of octsim, as results/thesis/phase_slope.nc"
     return f"move it away and run again to make {path.name} anew"
 
 
@@ -201,7 +218,7 @@ def _checked(
         if stage is None:
             raise DatasetError(f"{path}: not a dataset of octsim; give one that is")
         raise DatasetError(f"{path}: not octsim's dataset of the stage {stage}; {_remedy(path)}")
-    dataset = upgraded(dataset, path)
+    dataset = with_wavelength(upgraded(dataset, path))  # files of 0.3.0 and before lack some
     if config is None:
         return dataset
     differ = differing(found, config, json.loads(dataset.attrs["config"]))

@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator, Mapping
 
-from octsim.config.derive import by_light_paths, parts_of
+from octsim.config.derive import by_light_paths, overlap, parts_of
+from octsim.config.following import FOLLOWING, follows
 from octsim.config.grid import Axis, axes, combinations
 from octsim.config.models import Config
 from octsim.config.scheme import light_keys, scheme_of
@@ -12,6 +13,7 @@ from octsim.datasets.stage import LIGHT, RAYS, SUMMING, Stage
 _DECIDING = (
     "tracing.scheme", "tracing.preset", "sweep.focus", "scene.refractive_index", "polarisation",
     "beam", "detector.falloff", "objective.pupil", "objective.focal_shift",
+    *FOLLOWING,
 )  # fmt: skip
 """Keys that decide which others are read."""
 
@@ -29,6 +31,13 @@ def keys_behind(stage: str, config: Config) -> tuple[str, ...]:
 
 
 def _read(stage: str, config: Config) -> Iterator[str]:
+    read = [*_asked(stage, config)]
+    yield from read
+    if any(follows(config, one) and overlap(one, key) for one in FOLLOWING for key in read):
+        yield "sweep.diameters"
+
+
+def _asked(stage: str, config: Config) -> Iterator[str]:
     for key in CATALOG[stage].reads if stage in CATALOG else ():
         if key == LIGHT:
             yield from light_keys(config)

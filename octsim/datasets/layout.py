@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from octsim.config.grid import Axis, Combination, combinations
 from octsim.config.models import Config
-from octsim.datasets.axes import axis_coordinates, axis_name
+from octsim.datasets.axes import axis_coordinates, axis_name, wavelengths
 from octsim.datasets.catalog import CATALOG
 from octsim.datasets.keys import keys_behind, light_of, stage_axes
 from octsim.datasets.variables import meaning
@@ -124,6 +124,10 @@ class Layout:
     def coordinates(self) -> dict[str, xr.Variable]:
         """Coordinates of the whole dataset: the axes' values and the stage's own."""
         found = {name: self._merged(name) for name in next(iter(self.own.values()))}
+        if "wavenumber" in found and "wavelength" not in found:
+            found["wavelength"] = xr.Variable(
+                found["wavenumber"].dims, wavelengths(found["wavenumber"].values)
+            )
         for name, variable in found.items():
             variable.attrs = meaning(name)
         return {**axis_coordinates(self.axes, self.combinations), **found}

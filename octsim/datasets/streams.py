@@ -1,5 +1,6 @@
 """Stages part by part: combination after combination, block after block, in a fixed order."""
 
+import inspect
 from collections.abc import Callable, Iterator, Mapping
 from functools import update_wrapper
 from typing import Any, Generic, NamedTuple, ParamSpec, Protocol
@@ -8,6 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from octsim.config.given import with_config, with_named_config
 from octsim.config.grid import Combination
 from octsim.datasets.files import attributes
 from octsim.datasets.layout import Layout, filling
@@ -136,10 +138,19 @@ def in_memory(stream: Stream) -> xr.Dataset:
 class Streamed(Generic[Parameters]):
     """A stage: called, it gives its dataset in memory; `stream` gives it part by part."""
 
+    __name__: str
+
     def __init__(self, stream: Callable[Parameters, Stream]) -> None:
         self.stream = stream
         update_wrapper(self, stream)
 
     def __call__(self, *arguments: Parameters.args, **keywords: Parameters.kwargs) -> xr.Dataset:
-        """Return the stage's dataset, in memory."""
-        return in_memory(self.stream(*arguments, **keywords))
+        """Return the stage's dataset, in memory; its config may be a file's name or a mapping."""
+        given, named = with_config(arguments), with_named_config(keywords)
+        return in_memory(self.stream(*given, **named))
+
+    def __repr__(self) -> str:
+        own = inspect.signature(self.stream).parameters.values()
+        plain = inspect.Signature([one.replace(annotation=one.empty) for one in own])
+        purpose = (self.__doc__ or "").strip().partition("\n")[0]
+        return f"<stage {self.__name__}{plain}: {purpose} Returns its Dataset.>"

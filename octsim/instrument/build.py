@@ -8,6 +8,7 @@ from math import pi
 from typing import TYPE_CHECKING
 
 import octsim.optics.shipped_materials  # noqa: F401  what a name in a config stands for
+from octsim.config.following import scan_diameter
 from octsim.optics.detector import Detector, fibre_detector
 from octsim.optics.effects import Effects, ReferenceArm, Waist
 from octsim.optics.falloff import (
@@ -102,7 +103,7 @@ def _plates(scene: SceneConfig, thickness: float) -> Scene:
 
 def surface_names(config: Config) -> tuple[str, ...]:
     """Return the short names of the scene's surfaces, of which those of light paths are made."""
-    return scene_of(config, config.focus_scan.diameter).surface_names
+    return scene_of(config, scan_diameter(config)).surface_names
 
 
 def pupil_of(config: Config) -> Pupil:

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from octsim.config.following import fitted_diameters
 from octsim.config.models import Config
 from octsim.config.scheme import scheme_of
 from octsim.stages.gaussian_fits import FitStatus
@@ -130,7 +131,7 @@ def remedy(config: Config, law: xr.Dataset) -> str:
     law : Dataset
         Its law, which lacks centres.
     """
-    if config.focus_law.diameters.num < FEWEST:
+    if fitted_diameters(config).num < FEWEST:
         return f"raise focus_law.diameters.num to {FEWEST} or more"
     failed = law["centre_use"].values != CentreUse.FITTED_THROUGH
     if (law["status"].values[failed] == FitStatus.NO_LIGHT).all():

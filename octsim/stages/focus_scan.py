@@ -6,6 +6,7 @@ import numpy as np
 
 from octsim.base.threads import each_block
 from octsim.config.derive import counting_rays
+from octsim.config.following import scan_diameter, scan_foci
 from octsim.config.grid import Combination
 from octsim.config.models import Config
 from octsim.datasets.layout import Coordinate, Layout
@@ -48,7 +49,7 @@ def focus_scan(
     """
 
     def own(config: Config) -> dict[str, Coordinate]:
-        return {"focus": ("focus", config.focus_scan.focus.values())}
+        return {"focus": ("focus", scan_foci(config).values())}
 
     layout = Layout(
         "focus_scan", config, "Intensity and number of detected rays over the focus, for one "
@@ -60,7 +61,7 @@ def focus_scan(
 def _scanned(layout: Layout, points: Points, threads: int, share: Share) -> Iterator[Part]:
     def points_of(block: tuple[Combination, slice]) -> Iterator[tuple[_Scanner, float, float]]:
         at, span = block
-        scanner, diameter = _Scanner(at.config, points), at.config.focus_scan.diameter
+        scanner, diameter = _Scanner(at.config, points), scan_diameter(at.config)
         return ((scanner, diameter, z) for z in layout.own[at.position]["focus"][1][span].tolist())
 
     blocks = share.blocks(layout)
@@ -69,6 +70,6 @@ def _scanned(layout: Layout, points: Points, threads: int, share: Share) -> Iter
         variables = {
             **brightness_variables(("focus",), (len(found),), list(light)),
             "rays_detected": ("focus", np.array(rays)),
-            "diameter": at.config.focus_scan.diameter,
+            "diameter": scan_diameter(at.config),
         }
         yield Part(at, span.start, span.stop - span.start, variables)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.base.threads import each_block
+from octsim.config.following import fitted_diameters
 from octsim.config.grid import Combination
 from octsim.config.models import Config
 from octsim.datasets.files import flags
@@ -48,10 +49,9 @@ def focus_sweep(
 
 def law_foci(config: Config) -> dict[str, Coordinate]:
     """Return the coordinates of a dataset over the focus law's diameters and fractions."""
-    law = config.focus_law
     return {
-        "diameter": ("diameter", law.diameters.values()),
-        "fraction": ("fraction", law.fraction.values()),
+        "diameter": ("diameter", fitted_diameters(config).values()),
+        "fraction": ("fraction", config.focus_law.fraction.values()),
     }
 
 

@@ -8,6 +8,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.optimize import leastsq
 
+from octsim.config.following import fitted_diameters
 from octsim.config.models import Config
 from octsim.datasets.files import flags
 from octsim.datasets.layout import Coordinate, Layout
@@ -245,7 +246,7 @@ def gaussian_fits(config: Config, sweep: xr.Dataset) -> Stream:
 
 def law_diameters(config: Config) -> dict[str, Coordinate]:
     """Return the coordinates of a dataset over the focus law's diameters."""
-    return {"diameter": ("diameter", config.focus_law.diameters.values())}
+    return {"diameter": ("diameter", fitted_diameters(config).values())}
 
 
 def fitted(sweep: xr.Dataset) -> dict[str, object]:

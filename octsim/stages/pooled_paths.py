@@ -5,6 +5,7 @@ import hashlib
 import numpy as np
 import xarray as xr
 
+from octsim.config.following import scan_diameter
 from octsim.config.models import Config
 from octsim.instrument.build import scene_of
 from octsim.tracing.light_paths import names_of_paths
@@ -23,7 +24,7 @@ class PathPool:
     def pooled(self, config: Config, part: xr.Dataset) -> xr.Dataset:
         """Return rays of a plain config with the pool's codes of their paths."""
         found, row = np.unique(part["path_code"].values, return_inverse=True)
-        scene = scene_of(config, config.focus_scan.diameter)
+        scene = scene_of(config, scan_diameter(config))
         names = names_of_paths(scene, config.spectrum.middle, found.tolist())
         codes = [self._code(name, code) for name, code in zip(names, found.tolist(), strict=True)]
         pooled = np.array(codes, np.int64)[row]

@@ -109,8 +109,8 @@ def test_the_cache_without_a_name_is_that_of_a_config_without_one() -> None:
 
 @pytest.mark.parametrize(
     "arguments",
-    [["--help"], ["cache", "show"], ["cache", "clear"], ["reproduce", "--help"],
-     ["verify", "none.zip"], ["unpack", "none.zip", "none"]],
+    [["--help"], ["--version"], ["completion", "bash"], ["cache", "show"], ["cache", "clear"],
+     ["reproduce", "--help"], ["verify", "none.zip"], ["unpack", "none.zip", "none"]],
     ids=" ".join,
 )  # fmt: skip
 def test_what_computes_nothing_starts_without_what_computes(
@@ -143,3 +143,10 @@ def test_arguments_that_are_none_are_one_line(arguments: list[str], folder: Path
     assert line.startswith("octsim")
     assert "--help` says what there is" in line
     assert done.stdout == ""
+
+
+def test_the_version_is_the_package_s(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--version"])
+    assert ended.value.code == 0
+    assert capsys.readouterr().out == f"octsim {octsim.__version__}\n"

@@ -18,6 +18,7 @@ import octsim
 from octsim.archive.pack import pack
 from octsim.archive.run_folder import run_in
 from octsim.cli.main import main
+from octsim.config.following import calibration_diameters
 from octsim.datasets.files import write
 from octsim.datasets.versions import SCHEMA
 
@@ -308,7 +309,7 @@ def test_an_expansion_is_made_anew_from_the_series_that_it_holds(tmp_path: Path)
     file = tmp_path / "expansion.nc"
     # not this run's own calibration, so the numbers that follow from one differ
     names = ("fixed_focus_phase_slope", "fixed_focus_phase_slope_standard_error", "phase_curvature")
-    diameter = config.calibration.diameters.values()
+    diameter = calibration_diameters(config).values()
     table = {n: ("diameter", np.full(8, v)) for n, v in zip(names, (20.0, 1.0, 0.0), strict=True)}
     series = tmp_path / "phases.csv"
     series.write_text(SERIES)

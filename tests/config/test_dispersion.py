@@ -17,8 +17,8 @@ from octsim.config.abilities import as_far_as, asked_of_scheme
 from octsim.config.checks import impossible as all_impossible
 from octsim.config.derive import merge, nested, validated
 from octsim.config.dispersion import moved
+from octsim.config.known_keys import known_keys
 from octsim.config.load import load_config
-from octsim.config.messages import known_keys
 from octsim.config.models import Config
 from octsim.config.scene_checks import impossible_scene
 from octsim.config.told import told

@@ -13,8 +13,9 @@ from octsim.config.checks import impossible, plain_remarks
 from octsim.config.derive import merge, validated
 from octsim.config.effects import FocalShiftConfig
 from octsim.config.load import load_config
-from octsim.config.messages import nearest_key, unit_of
+from octsim.config.messages import unit_of
 from octsim.config.models import Config
+from octsim.config.nearest import nearest_key
 from octsim.config.unread import unread, unread_scene
 from octsim.optics.zernike import NAMES
 from octsim.schemes.table import COUNTED_RAYS, Ability

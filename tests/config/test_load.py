@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 
 from octsim.base.errors import ConfigError, OctsimWarning
 from octsim.config.derive import parts_of
+from octsim.config.following import fitted_diameters
 from octsim.config.grid import remarks
+from octsim.config.known_keys import known_keys
 from octsim.config.load import load_config
-from octsim.config.messages import known_keys
 from octsim.config.models import Config
 from octsim.config.units import format_length, parse_length
 from octsim.schemes.table import PRESETS
@@ -47,7 +48,7 @@ BAD: list[tuple[dict[Any, Any], str]] = [
     ({"sweep": {"diameters": {"start": "0 um"}}}, "sweep.diameters.start: '0 um' given"),
     # types
     ({"scene": None}, "scene: null given; it should be a mapping"),
-    ({"sweep": {"diameters": [1, 2]}}, "sweep.diameters: [1, 2] given; it should be a mapping"),
+    ({"sweep": {"diameters": [1, "2 um"]}}, "sweep.diameters.0: 1 given; a length needs its unit"),
     ({"tracing": {"rays": "3000"}}, "tracing.rays: '3000' given; it should be a whole number"),
     ({"tracing": {"rays": 1.5}}, "tracing.rays: 1.5 given; it should be a whole number"),
     ({"tracing": {"rays": True}}, "tracing.rays: true given"),
@@ -193,7 +194,7 @@ def test_yaml_may_reuse_parts(tmp_path: Path) -> None:
         "sweep: {diameters: {<<: *few, num: 11}}\n"
     )
     assert load_config(file).sweep.diameters.num == 11
-    assert load_config(file).focus_law.diameters.num == 5
+    assert fitted_diameters(load_config(file)).num == 5
 
 
 @given(st.sampled_from(BAD))

@@ -13,8 +13,9 @@ from octsim.base.errors import ConfigError, OctsimWarning
 from octsim.config.checks import plain_remarks
 from octsim.config.derive import config_at, merge, nested, part_of
 from octsim.config.grid import combinations, value_at
+from octsim.config.known_keys import known_keys
 from octsim.config.load import load_config
-from octsim.config.messages import known_keys, unit_of
+from octsim.config.messages import unit_of
 from octsim.config.models import Config
 from octsim.config.scene_checks import impossible_scene
 from octsim.config.told import told

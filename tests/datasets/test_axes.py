@@ -1,6 +1,6 @@
 """Names of a grid's axes in its datasets."""
 
-from octsim.config.messages import known_keys
+from octsim.config.known_keys import known_keys
 from octsim.datasets.axes import dimension_name
 
 

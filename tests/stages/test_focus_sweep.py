@@ -8,13 +8,14 @@ from literal import literal
 from made_runs import WHOLE
 
 import octsim
+from octsim.config.following import fitted_diameters
 
 CONFIG = octsim.load_config(WHOLE)
 
 
 def test_foci_are_fractions_of_the_diameter(stages: dict[str, xr.Dataset]) -> None:
     swept = stages["focus_sweep"]
-    assert np.array_equal(swept["diameter"], CONFIG.focus_law.diameters.values())
+    assert np.array_equal(swept["diameter"], fitted_diameters(CONFIG).values())
     assert np.array_equal(swept["fraction"], CONFIG.focus_law.fraction.values())
     expected = (swept["fraction"] * swept["diameter"]).transpose("diameter", "fraction")
     assert np.array_equal(swept["focus"], expected)

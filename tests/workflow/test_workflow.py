@@ -16,7 +16,7 @@ import yaml
 from checkout import GIVEN, GRID, ROOT, TINY, Checkout, counts, merged
 from edits import EDITS, EVERYTHING, edit_of
 
-from octsim.config.messages import known_keys
+from octsim.config.known_keys import known_keys
 from octsim.config.models import Config
 
 STAGES = [

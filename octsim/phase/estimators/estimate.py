@@ -1,9 +1,12 @@
 """What every estimator gives, and the terms in which all are written."""
 
+from collections import Counter
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from octsim.phase.fringe_status import FringeStatus
 
 Array = NDArray[np.float64]
 
@@ -44,6 +47,24 @@ class Estimate(NamedTuple):
     """Standard error of the depth by that noise alone, (D,), µm; NaN where the depth is given."""
     status: NDArray[np.int8]
     """`octsim.phase.fringe_status.FringeStatus` of each, (D,)."""
+
+    def __repr__(self) -> str:
+        status = np.asarray(self.status)
+        words = Counter(FringeStatus(code).name.lower() for code in status.ravel().tolist())
+        told = ", ".join(f"{word.replace('_', ' ')} {count}" for word, count in words.most_common())
+        parts = [f"{name} {_span(getattr(self, name))}" for name in _TOLD]
+        return f"<Estimate of {status.size} spectra ({told}): {', '.join(parts)}>"
+
+
+_TOLD = ("phase", "depth", "visibility", "snr", "phase_standard_error")
+
+
+def _span(values: Array) -> str:
+    known = np.asarray(values)[np.isfinite(values)]
+    if not known.size:
+        return "unknown"
+    low, high = known.min(), known.max()
+    return f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
 
 
 def middle(wavenumber: Array) -> float:

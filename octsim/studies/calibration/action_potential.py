@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from octsim.config.derive import calibrating
+from octsim.config.given import taking_config
 from octsim.config.models import Config
 from octsim.datasets.files import make
 from octsim.instrument.instrument import Instrument
@@ -38,6 +39,7 @@ def swelling(time: Array, largest: float) -> Array:
     return pulse
 
 
+@taking_config
 def action_potential(
     config: Config,
     calibration: xr.Dataset,

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Mapping
 
 from octsim.config.derive import nested
+from octsim.config.following import calibration_diameters
 from octsim.config.light import FibreMode, GaussianFill
 from octsim.config.models import Config
 from octsim.config.scheme import scheme_of
@@ -103,7 +104,7 @@ def _offset_key(config: Config) -> str:
 PARAMETERS: Mapping[str, Parameter] = {
     # of the neuron at rest: its focus goes with it
     "diameter": Parameter(
-        2e-3, lambda _: 0.0, _nothing, lambda c: (-0.9 * c.calibration.diameters.start, math.inf)
+        2e-3, lambda _: 0.0, _nothing, lambda c: (-0.9 * calibration_diameters(c).start, math.inf)
     ),
     "gap": keyed(1e-3, lambda c: c.scene.swept_gap_key, limits=lambda _: (0.0, math.inf)),
     "glass": index_of(lambda c: c.scene.objective_medium, limits=_glass_limits),

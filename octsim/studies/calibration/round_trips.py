@@ -7,6 +7,7 @@ import xarray as xr
 
 from octsim.base.threads import each
 from octsim.config.derive import calibrating
+from octsim.config.following import calibration_diameters
 from octsim.config.models import Config
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
@@ -44,7 +45,7 @@ class Trips(NamedTuple):
 
 def trip_diameters(config: Config) -> Array:
     """Return the diameters of the round trips, (D,), µm: halfway between the calibration's."""
-    table = config.calibration.diameters.values()
+    table = calibration_diameters(config).values()
     left = (np.array(PLACES) * (table.size - 2)).round().astype(int)
     between: Array = (table[left] + table[left + 1]) / 2
     return between

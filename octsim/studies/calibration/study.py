@@ -9,6 +9,8 @@ from scipy.interpolate import CubicSpline
 
 from octsim.base.threads import each
 from octsim.config.derive import by_rays, calibrating
+from octsim.config.following import calibration_diameters
+from octsim.config.given import taking_config
 from octsim.config.maxwell import beyond_maxwell
 from octsim.config.models import Config
 from octsim.config.processing import Processing
@@ -43,6 +45,7 @@ def by_fft(config: Config) -> Processing:
     return config.processing.model_copy(update={"estimator": "fft"})
 
 
+@taking_config
 def calibration(
     config: Config,
     law: xr.Dataset | None = None,
@@ -82,7 +85,7 @@ def calibration(
         given can't do the scene, or it takes longer than ``budget.cpu_hours``.
     """
     own, line = converged(config), focus_line(config, law)
-    diameters = config.calibration.diameters.values()
+    diameters = calibration_diameters(config).values()
     spectra = _POINTS * (len(parameters_of(own)) + 4)
     require_budget(own, "calibration", "a calibration by scheme {} takes", spectra, diameters)
     foci = line.at(diameters)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from octsim.config.derive import by_accuracy, with_flat_source
 from octsim.config.models import Config
+from octsim.config.ranges import even
 from octsim.datasets.files import make
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
@@ -86,7 +87,7 @@ def causes(
     config = with_flat_source(config)  # causes are of the scene
     foci, line = sweep_foci(config, law), focus_line(config, law)
     run, converged = (Instrument(one, points) for one in (config, by_accuracy(config, _ACCURACY)))
-    diameter = config.sweep.diameters.values()
+    diameter = even(config.sweep.diameters, "causes").values()
     spectra = MovedSpectra(run, converged, line, diameter, threads)
     k, neuron = run.wavenumber, config.swept_material
     steps = _steps(diameter, aliasing_step(neuron, k[0], k[-1]))

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from octsim.base.errors import ConfigError
 from octsim.base.threads import each
 from octsim.config.derive import changed, counting_rays, nested
+from octsim.config.following import scan_diameter, scan_foci
 from octsim.config.maxwell import beyond_maxwell, by_maxwell
 from octsim.config.models import Config, FocusLine
 from octsim.datasets.files import make
@@ -95,14 +96,14 @@ def diffraction(
         If Maxwell's equations are not solved for the config.
     """
     every = {name: Instrument(one, points) for name, one in instruments(config).items()}
-    scan, sweep = config.focus_scan, config.sweep.diameters
-    heights = np.linspace(scan.focus.start, scan.focus.stop, foci)
+    scan, sweep = scan_foci(config), config.sweep.diameters
+    heights = np.linspace(scan.start, scan.stop, foci)
     diameter = np.linspace(sweep.start, sweep.stop, diameters)
     sparse = diameter[::_SPARSE]
 
     def scan_by(instrument: Instrument) -> Array:
         def mean_at(focus: float) -> float:
-            return instrument.brightness(instrument.light(scan.diameter, focus)).mean
+            return instrument.brightness(instrument.light(scan_diameter(config), focus)).mean
 
         return np.array(list(each(mean_at, heights.tolist(), threads)))
 
@@ -136,7 +137,7 @@ def diffraction(
 def _variables(
     config: Config, heights: Array, intensity: Array, diameter: Array, phase: Array, off: Array
 ) -> dict[str, Any]:
-    size = config.focus_scan.diameter
+    size = scan_diameter(config)
     peaks = np.array([
         [peak_within(heights, row, a * size, b * size) for a, b in WINDOWS.values()]
         for row in intensity

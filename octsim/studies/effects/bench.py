@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from octsim.config.derive import changed
 from octsim.config.models import Config, FocusLine
+from octsim.config.ranges import even
 from octsim.studies.effects.changes import Change, Measures, Seen, change, measures, noise, seen
 from octsim.studies.effects.sweeps import Swept, made_rougher, swept
 from octsim.studies.effects.variants import EffectStatus, Variant
@@ -79,7 +80,7 @@ def bench_of(config: Config, line: FocusLine, number: int, threads: int) -> Benc
         How many diameters.
     threads : int
     """
-    span, k = config.sweep.diameters, config.spectrum.wavenumbers()
+    span, k = even(config.sweep.diameters, "effects"), config.spectrum.wavenumbers()
     oscillations = config.swept_group_index * (k[-1] - k[0]) / np.pi * span.stop
     most = max(SAMPLES, math.ceil(_OF_A_FRINGE * oscillations))
     sampled = {

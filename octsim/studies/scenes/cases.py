@@ -7,7 +7,9 @@ from typing import Any, NamedTuple
 from octsim.base.errors import ConfigError
 from octsim.config.checks import impossible
 from octsim.config.derive import by_light_paths, by_waves, counting_rays, merge, validated
+from octsim.config.following import fitted_diameters
 from octsim.config.models import Config
+from octsim.config.ranges import DiameterRange
 from octsim.studies.effects.overlays import Overlay, cover, neighbour, of_cylinder, shell
 
 AS_CONFIGURED = "as configured"
@@ -79,7 +81,9 @@ def cases(config: Config) -> list[Case]:
 def _of_the_sweep(config: Config) -> Config:
     """Return a config, not checked, that has no diameters but the sweep's: what is beside fits."""
     ends = config.sweep.diameters
-    law = config.focus_law.diameters.model_copy(update={"start": ends.start, "stop": ends.stop})
+    law = DiameterRange.model_construct(
+        start=ends.start, stop=ends.stop, num=fitted_diameters(config).num
+    )
     return config.model_copy(
         update={
             "focus_law": config.focus_law.model_copy(update={"diameters": law}),

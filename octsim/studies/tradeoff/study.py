@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from octsim.config.derive import by_accuracy, by_rays, reference
 from octsim.config.models import Config, FocusLine
+from octsim.config.ranges import even
 from octsim.datasets.files import make
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
@@ -84,6 +85,7 @@ def tradeoff(
         light paths need than counted rays, for each target error; and what effects cost and change
         by each scheme.
     """
+    even(config.sweep.diameters, "tradeoff")
     unsolved = why_no_maxwell(config)
     listed = list(settings(config, waves=not unsolved) if chosen is None else chosen)
     points = points or Points()
