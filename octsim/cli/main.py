@@ -9,9 +9,9 @@ from typing import NoReturn
 
 from octsim.base.errors import OctsimError
 from octsim.base.surroundings import settle
-from octsim.cli import archive, cache, compare, measured, reproduce
+from octsim.cli import archive, cache, compare, measured, report, reproduce
 
-MODULES = (measured, archive, compare, reproduce, cache)
+MODULES = (measured, report, archive, compare, reproduce, cache)
 """Each adds commands of its own, and imports what does their work when one is asked for."""
 
 
