@@ -3,10 +3,14 @@
 import hashlib
 import re
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from octsim.archive.run_folder import Run
 from octsim.base.files import digest_of
 from octsim.base.provenance import PACKAGE, source_digest
+
+if TYPE_CHECKING:
+    # the workflow asks for the code of a report, and needs no datasets for that
+    from octsim.archive.run_folder import Run
 
 REPORT = "report.html"
 """Name of a run's report, in the run's folder and in its archive."""
@@ -28,14 +32,14 @@ def report_code() -> str:
     return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:12]
 
 
-def datasets_digest(run: Run) -> str:
+def datasets_digest(run: "Run") -> str:
     """Return a digest of the datasets of a run that its report shows: of what is in their files."""
     shown = (name for name in SHOWN if name in run.datasets)
     lines = "".join(f"{name} {digest_of(run.datasets[name])}\n" for name in shown)
     return hashlib.sha256(lines.encode()).hexdigest()
 
 
-def is_report_of(file: Path, run: Run) -> bool:
+def is_report_of(file: Path, run: "Run") -> bool:
     """Return whether a file is a report that was made from a run's datasets as they are now."""
     with file.open(encoding="utf-8", errors="replace") as stream:
         found = _RECORDED.search(stream.read(_HEAD))
