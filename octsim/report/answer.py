@@ -54,13 +54,16 @@ def _of_calibration(table: xr.Dataset) -> Html:
     one = table.isel(diameter=table.sizes["diameter"] // 2)
     slope = float(one["fixed_focus_phase_slope"])
     error = float(one["fixed_focus_phase_slope_standard_error"])
+    if not (np.isfinite(slope) and slope):
+        return _nothing(f"{_capital(told.summary(table))}.")
     what = (
         f"phase slope ± its standard error, at the diameter d = {float(one['diameter']):.4g} µm "
         "with the focus held: by calibration.nc"
     )
-    inverse = f"{1000 / slope:.4g} pm" if slope else "nothing that is known"
     return _number(
-        with_error(slope, error), what, f"So 1 mrad of phase is {inverse} of the diameter there.",
+        with_error(slope, error),
+        what,
+        f"So 1 mrad of phase is {signed(1000 / slope, 2)} pm of the diameter there.",
         f"{_capital(told.summary(table))}.",
     )  # fmt: skip
 

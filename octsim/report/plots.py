@@ -56,6 +56,7 @@ def values_of(shown: Shown) -> dict[str, Any]:
     paths = there.get("paths")
     return {
         "diameter": None if diameter is None else packed(diameter[chosen], double=True),
+        "every": chosen.step or 1,
         "slope": None if slopes is None else _slopes(slopes, chosen) | _band(there),
         "spectra": None if spectra is None else _spectra(shown.config, spectra, chosen),
         "paths": None if paths is None else _paths(paths, chosen),
@@ -160,7 +161,9 @@ def a_scans(config: Config, intensity: Array, k: Array, diameter: Array) -> tupl
 
 
 def _paths(paths: xr.Dataset, chosen: slice) -> dict[str, Any]:
-    few = paths.isel(path=slice(0, MOST_PATHS), diameter=chosen)
+    # of a grid, a path may be another combination's alone
+    there = np.flatnonzero((paths["field_amplitude"] > 0).any("diameter"))
+    few = paths.isel(path=there[:MOST_PATHS], diameter=chosen)
     columns = ("share", "field_amplitude", "mean_optical_path_length")
     return {"names": [str(one) for one in few["path"].values]} | {
         name: packed(few[name].transpose("path", "diameter")) for name in columns

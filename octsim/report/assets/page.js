@@ -56,8 +56,11 @@
         hooks: {
           drawClear: [(u) => area(u, band.band_diameter, band.low, band.high, c.band)],
           draw: [(u) => {
-            const { ctx } = u;
+            const { ctx, bbox } = u;
             ctx.save();
+            ctx.beginPath();
+            ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+            ctx.clip();
             ctx.strokeStyle = c.middle;
             ctx.lineWidth = 1.5 * devicePixelRatio;
             ctx.beginPath();
@@ -215,10 +218,9 @@
     const facts = [];
     if (values.slope) {
       const { columns, component, fringe, predicted } = values.slope;
-      const every = Math.ceil(unpacked(columns.diameter).length / diameter.length);
-      const slope = unpacked(columns.phase_slope)[at * every], ideal = unpacked(columns.ideal_phase_slope)[at * every];
+      const [slope, ideal] = ["phase_slope", "ideal_phase_slope"].map((name) => unpacked(columns[name])[at * values.every]);
       facts.push(["Phase slope", Number.isFinite(slope) ? `${slope.toFixed(3)} mrad/nm` : "not known"]);
-      facts.push(["Ideal spectrum", `${told(ideal, 5)} mrad/nm`], ["Off the prediction", `${told(slope - predicted, 3)} mrad/nm`]);
+      facts.push(["Ideal spectrum", `${told(ideal, 5)} mrad/nm`], ["Off the prediction", `${told(predicted === null ? NaN : slope - predicted, 3)} mrad/nm`]);
       facts.push(["Strongest component", String(component[at])]);
       if (fringe.length) facts.push(["Fringe", fringe[at] || "not known"]);
     }
