@@ -17,6 +17,9 @@ from octsim.datasets.catalog import CATALOG
 from octsim.report.markup import Html, details, element, joined, table
 from octsim.report.shown import Shown
 
+_LETTERS = 200
+"""Of a value of the config in a table: one may be the wavelengths of thousands of pixels."""
+
 
 def about(shown: Shown, given: ArchiveConfig) -> Html:
     """Return the sections on config, versions, warnings and citation.
@@ -29,6 +32,10 @@ def about(shown: Shown, given: ArchiveConfig) -> Html:
         Who made the data, under which licence.
     """
     return joined(_warnings(shown), _config(shown), _versions(shown), _cite(shown, given))
+
+
+def _shortened(text: str) -> str:
+    return text if len(text) <= _LETTERS else f"{text[: _LETTERS - 1]}…"
 
 
 def _said(shown: Shown) -> Iterator[str]:
@@ -48,7 +55,9 @@ def _warnings(shown: Shown) -> Html:
 def _config(shown: Shown) -> Html:
     text = yaml.safe_dump(shown.run.config.to_record(), sort_keys=False, allow_unicode=True)
     changes = config_changes(Config(), shown.run.config)
-    rows: list[list[object]] = [[one.what, one.first, one.second] for one in changes]
+    rows: list[list[object]] = [
+        [one.what, _shortened(one.first), _shortened(one.second)] for one in changes
+    ]
     differs = (
         table("Keys that differ from the default, the thesis", ["Key", "Default", "Here"], rows)
         if rows

@@ -70,7 +70,7 @@ def shown_of(run: Run, number: int = 1) -> Shown:
 
 def _part(run: Run, name: str, at: Combination, names: tuple[str, ...] = ()) -> xr.Dataset:
     """Read what a dataset has of a combination, as if its config varied nothing."""
-    with opened(run.datasets[name], name, run.config) as dataset:
+    with opened(run.datasets[name], name) as dataset:
         kept = dataset.drop_vars(list(_LEFT_OUT.get(name, ())), errors="ignore")
         part = Stored(kept, name, run.config).part(at, names=names)
     return part.assign_attrs(dataset.attrs | {"config": json.dumps(at.config.to_record())})
@@ -81,7 +81,7 @@ def compared(run: Run) -> Iterator[tuple[int, str, float, float]]:
     if not run.config.grid.varied or "phase_slope" not in run.datasets:
         return
     of_each = ("mean_phase_slope", "phase_slope_standard_deviation")
-    with opened(run.datasets["phase_slope"], "phase_slope", run.config) as dataset:
+    with opened(run.datasets["phase_slope"], "phase_slope") as dataset:
         stored = Stored(dataset, "phase_slope", run.config)
         for number, at in enumerate(islice(combinations(run.config), _MOST_COMPARED), 1):
             part = stored.part(at, names=of_each)
