@@ -16,6 +16,8 @@ from octsim.report.words import command
 
 # what is black or nearly so on white paper has the colour of text, which is light in the dark
 _INKS = ("#000000", "#333333", "#262626")
+_IN_PAGE = {"svg.fonttype": "none", "legend.framealpha": 0.0}
+"""Text stays text, and nothing has a background of its own."""
 
 
 def scene(shown: Shown) -> Html:
@@ -30,7 +32,7 @@ def scene(shown: Shown) -> Html:
         said = element("p", "It is not drawn, as the focus is not known: there is no focus law.")
         return element("section", head, said, id="scene")
     try:
-        with look(), mpl.rc_context({"svg.fonttype": "none"}):
+        with look(), mpl.rc_context(_IN_PAGE):
             drawn = embedded(
                 scene_figure(spectra), "The scene to scale, with rays of its light paths"
             )

@@ -11,8 +11,10 @@ from octsim.report.page import report
 
 @pytest.fixture(scope="session")
 def plain(stages: dict[str, xr.Dataset], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Write a run without anything beside it."""
-    return written(stages, tmp_path_factory.mktemp("plain") / "whole")
+    """Write a run without anything beside it, and its report."""
+    folder = written(stages, tmp_path_factory.mktemp("plain") / "whole")
+    report(folder)
+    return folder
 
 
 @pytest.fixture(scope="session")

@@ -81,6 +81,15 @@ def test_a_page_asks_nothing_of_the_network(full: Path) -> None:
     assert policy.count("sha256-") == SCRIPTS
 
 
+def test_the_scene_is_drawn_in_the_colours_of_the_page(full: Path) -> None:
+    text = (full / "report.html").read_text("utf-8")
+    drawn = text[text.index("<svg") : text.index("</svg>")]
+    assert "currentColor" in drawn
+    # a background of its own, or ink that is black in the dark
+    assert not [one for one in ("#ffffff", "#000000", "#333333") if one in drawn]
+    assert ">PT CR PT: " in drawn
+
+
 def test_the_number_is_the_calibration_s_with_its_error_and_its_diameter(full: Path) -> None:
     table = read(full / "calibration.nc").isel(diameter=4)
     text = Page((full / "report.html").read_text("utf-8")).text
@@ -97,7 +106,7 @@ def test_the_number_is_the_calibration_s_with_its_error_and_its_diameter(full: P
 def test_without_a_calibration_it_is_the_mean_and_the_command_for_one_is_said(
     plain: Path, stages: dict[str, xr.Dataset]
 ) -> None:
-    text = page_of(plain).text
+    text = Page((plain / "report.html").read_text("utf-8")).text
     mean = float(stages["phase_slope"]["mean_phase_slope"])
     number = re.search(r"([\d.]+) ± [\d.]+ mrad/nm", text)
     assert number is not None
@@ -140,7 +149,7 @@ def test_of_a_grid_one_combination_is_shown_and_which_is_said(number: int, tmp_p
     made = report(tmp_path, combination=number)
     page = Page(made.file.read_text("utf-8"))
     scheme = ["vogel", "vogel", "fullwave", "fullwave"][number - 1]
-    assert made.combination == f"tracing.scheme = {scheme}, scene.gap = 0 um"
+    assert made.combination == f"tracing.scheme = {scheme}, scene.gap = 0.0 um"
     assert f"Combination {number} of 4 is shown: {made.combination}" in page.text
     assert ("Maxwell's equations" if scheme == "fullwave" else "counted rays") in page.text
     assert {"slope-plot", "image-plot", "paths-body"} <= set(page.ids)
@@ -183,7 +192,7 @@ def test_a_dataset_that_is_missing_is_left_out(missing: str, folder: Path) -> No
 
 
 def test_what_has_nothing_to_show_is_refused_in_a_line(folder: Path, tmp_path: Path) -> None:
-    for file in folder.glob("*.nc"):
+    for file in folder.iterdir():
         if file.name not in ("focus_scan.nc", "focus_sweep.nc"):
             file.unlink()
     with pytest.raises(DatasetError, match=r"no dataset that a report shows, only focus_scan\.nc"):
