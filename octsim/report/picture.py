@@ -2,6 +2,7 @@
 
 import io
 import re
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -16,7 +17,7 @@ from octsim.report.words import command
 
 # what is black or nearly so on white paper has the colour of text, which is light in the dark
 _INKS = ("#000000", "#333333", "#262626")
-_IN_PAGE = {"svg.fonttype": "none", "legend.framealpha": 0.0}
+_IN_PAGE: Any = {"svg.fonttype": "none", "legend.framealpha": 0.0}
 """Text stays text, and nothing has a background of its own."""
 
 
