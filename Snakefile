@@ -25,6 +25,7 @@ settle_imports()
 settle_words()
 
 from filelock import FileLock, Timeout
+from octsim.archive.report_file import REPORT, SHOWN, report_code
 from octsim.base import clock
 from octsim.base.errors import OctsimError
 from octsim.base.files import digest_of, is_regular, require_folder
@@ -174,7 +175,7 @@ onstart:
 
 
 onsuccess:
-    for stage in [*jobs_of(run), *sorted(PLANNED.intersection(jobs(beside=True)))]:
+    for stage in [*jobs_of(run), *sorted(PLANNED.intersection([*jobs(beside=True), "report"]))]:
         found = Path(f"{FOLDER}/logs/{stage}.log")
         # there is none of what was not asked for
         lines = found.read_text("utf-8").splitlines() if found.is_file() else []
@@ -271,9 +272,29 @@ rule figures:
         "workflow/scripts/job.py"
 
 
+rule report:
+    input:
+        [f"{FOLDER}/{stage}.nc" for stage in stages_of(run)],
+        [file for file in BESIDE if Path(file).stem in SHOWN],
+    output:
+        update(f"{FOLDER}/{REPORT}"),
+    log:
+        f"{FOLDER}/logs/report.log",
+    resources:
+        **needs("spectra", "phase_slope"),
+    params:
+        # it shows the config, and whom to cite
+        made_from=lambda _: made_from(report_code(), "archive", *run.to_record()),
+    message:
+        "Write the report"
+    script:
+        "workflow/scripts/job.py"
+
+
 rule archive:
     input:
         rules.all.input,
+        rules.report.output,
         BESIDE,
     output:
         update(f"{FOLDER}/{run.run}.zip"),

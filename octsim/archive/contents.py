@@ -10,6 +10,7 @@ import netCDF4
 import yaml
 
 from octsim.archive.origin import Origin, origin_of
+from octsim.archive.report_file import REPORT, SHOWN, is_report_of
 from octsim.archive.run_folder import FIGURES, Run
 from octsim.base.errors import one_line
 from octsim.base.provenance import LOCK, environment, lock_file
@@ -85,6 +86,7 @@ def items_of(run: Run, config: Config) -> list[Item]:
     return [
         *datasets,
         *_figures(run, config),
+        *_report(run),
         Item(CONFIG, "config of the run, every key", text.encode(), "application/yaml"),
         Item(
             ENVIRONMENT,
@@ -123,6 +125,20 @@ def _figures(run: Run, config: Config) -> list[Item]:
     ]  # fmt: skip
 
 
+def _report(run: Run) -> list[Item]:
+    """Return the report of a run, if it is there and shows the datasets as they are."""
+    file = _folder_of(run) / REPORT
+    if not file.is_file() or file.is_symlink() or not is_report_of(file, run):
+        return []
+    about = "the run as one page, to be looked at in a browser"
+    stages = tuple(name for name in SHOWN if name in run.datasets)
+    return [Item(REPORT, about, file, "text/html", stages=stages)]
+
+
+def _folder_of(run: Run) -> Path:
+    return next(iter(run.datasets.values())).parent
+
+
 def _stages_of_figures(run: Run, config: Config) -> dict[str, tuple[str, ...]]:
     """Return the stages of each figure of a run, and of the targets whose datasets it has."""
     there: Mapping[str, tuple[str, ...]] = {
@@ -142,7 +158,7 @@ def omissions(run: Run, config: Config, items: Iterable[Item]) -> list[str]:
     missing += [
         f"{FIGURES}/{name}" for name in _stages_of_figures(run, config) if name not in drawn
     ]
-    folder = next(iter(run.datasets.values())).parent
+    folder = _folder_of(run)
     beside = [*folder.glob("*.nc"), *(folder / FIGURES).glob("*")]
     names = {file.relative_to(folder).as_posix() for file in beside if file.name[0] != "."}
     left = sorted(names - packed)
@@ -152,6 +168,11 @@ def omissions(run: Run, config: Config, items: Iterable[Item]) -> list[str]:
     lines = []
     if missing:
         lines.append(f"the archive goes without {', '.join(missing)}, which are not made")
+    if (folder / REPORT).exists() and REPORT not in packed:
+        lines.append(
+            f"the archive goes without {REPORT}, which is of other datasets than these; make it "
+            "again by octsim report"
+        )
     if left:
         lines.append(f"left out, as no datasets or figures of this run: {', '.join(left)}")
     if not lock_file():

@@ -28,7 +28,7 @@ class Task(NamedTuple):
     """What a job is told: plain data alone, as it may come from another process."""
 
     name: str
-    """Of the job: one of the catalog's, figures or archive."""
+    """Of the job: one of the catalog's, figures, report or archive."""
     folder: str
     """Of the run."""
     config: Mapping[str, Any]
@@ -57,7 +57,7 @@ def do(task: Task) -> int:
     logging.captureWarnings(capture=True)
     logging.raiseExceptions = False  # a full disk is said once, by what hits it
     warnings.simplefilter("ignore", OctsimWarning)  # the workflow has said these once
-    work = {"figures": _draw, "archive": _archive}.get(task.name, _make)
+    work = {"figures": _draw, "report": _report, "archive": _archive}.get(task.name, _make)
     try:
         work(task, folder, load_config(task.config))
         if task.share == [1, 1]:
@@ -130,6 +130,14 @@ def _draw(task: Task, folder: Path, config: Config) -> None:
     for stale in set(all_run_figures()) - set(figures):
         for file in (folder / "figures").glob(f"{stale}.*"):
             file.unlink()
+
+
+def _report(task: Task, folder: Path, config: Config) -> None:
+    """Write the report of a run, as one page."""
+    from octsim.report.page import report
+
+    file = Path(next(iter(task.output.values())))
+    logging.info("octsim: %s", report(folder, file, given=config.archive))
 
 
 def _archive(task: Task, folder: Path, config: Config) -> None:

@@ -19,12 +19,15 @@ from octsim.cli import (
     completion,
     init,
     measured,
+    report,
     reproduce,
     show,
     stages,
 )
 
-MODULES = (init, check, show, measured, stages, archive, compare, reproduce, cache, completion)
+MODULES = (
+    init, check, show, measured, stages, report, archive, compare, reproduce, cache, completion,
+)  # fmt: skip
 """Each adds commands of its own, and imports what does their work when one is asked for."""
 
 

@@ -15,3 +15,10 @@ def test_targets_have_their_names_and_are_no_part_of_a_run(
     for name in TARGETS:
         assert CATALOG[name].message in asked
         assert CATALOG[name].message not in run
+
+
+def test_a_report_is_asked_for_by_its_name_and_is_no_part_of_a_run(
+    planned: Callable[..., str],
+) -> None:
+    assert "Write the report" in planned("report")
+    assert "Write the report" not in planned()

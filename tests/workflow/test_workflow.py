@@ -298,6 +298,7 @@ def test_an_archive_is_packed_when_something_of_it_has_changed(law: Checkout) ->
         kept = {name: zipped.read(name) for name in zipped.namelist()}
     for name, data in before.items():
         assert kept[name.removeprefix("tiny/")] == data
+    assert b"octsim run tiny" in kept["report.html"]
     first = file.read_bytes()
     assert not would_run(TINY)
     assert not would_run(merged(TINY, {"cache": {"gigabytes": 1}}))

@@ -1,0 +1,1 @@
+"""The report: a run as one page that a person can look at."""
