@@ -1,6 +1,7 @@
 """The command `octsim`: its parser, and how it ends."""
 
 import argparse
+import itertools
 import os
 import sys
 from argparse import Namespace
@@ -9,9 +10,9 @@ from typing import NoReturn
 
 from octsim.base.errors import OctsimError
 from octsim.base.surroundings import settle
-from octsim.cli import archive, cache, compare, measured, reproduce
+from octsim.cli import archive, cache, compare, measured, reproduce, run
 
-MODULES = (measured, archive, compare, reproduce, cache)
+MODULES = (run, measured, archive, compare, reproduce, cache)
 """Each adds commands of its own, and imports what does their work when one is asked for."""
 
 
@@ -35,7 +36,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     commands = parser.add_subparsers(required=True, metavar="command")
     for module in MODULES:
         module.add(commands)
-    given = parser.parse_args(arguments)
+    given = _parsed(parser, sys.argv[1:] if arguments is None else arguments)
     do: Callable[[Namespace], int] = given.do
     try:
         ended = do(given)
@@ -44,7 +45,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # who reads has seen enough, as head and less have
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
+    except KeyboardInterrupt:
+        print("octsim: stopped", file=sys.stderr)
+        return 130
     except OctsimError as error:
         for line in str(error).splitlines():
             print(f"octsim: {line}", file=sys.stderr)
         return int(given.failed)
+
+
+def _parsed(parser: Parser, arguments: Sequence[str]) -> Namespace:
+    """Return the arguments; `run` takes its words on both sides of options, and flags after --."""
+    if list(arguments[:1]) != ["run"]:
+        return parser.parse_args(arguments)
+    own = list(itertools.takewhile(lambda word: word != "--", arguments))
+    given, more = parser.parse_known_args(own)
+    if wrong := [word for word in more if word.startswith("-")]:
+        parser.error(f"unrecognized arguments: {' '.join(wrong)}; write snakemake's own after --")
+    given.words += more
+    given.flags = list(arguments[len(own) + 1 :])
+    return given
