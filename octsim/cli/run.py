@@ -81,7 +81,7 @@ def run(given: argparse.Namespace) -> int:
     configs = configs or [str(workflow_folder() / "config" / "default.yaml")]
     config, _ = load_and_tell(*configs)
     shown = "quiet" if given.quiet else "verbose" if given.verbose else ""
-    if not shown and sys.stderr.isatty():
+    if not (shown or given.flags) and sys.stderr.isatty():
         print("octsim: starting snakemake …", end="", file=sys.stderr, flush=True)
     return _Running(_command(configs, targets, config.run, given), given.flags, shown).ended()
 

@@ -69,7 +69,8 @@ def test_a_run_stopped_again_and_again_says_one_line_each_time_and_comes_to_the_
     command: list[str], number: signal.Signals, whole: dict[str, bytes], tmp_path: Path
 ) -> None:
     checkout = checkout_in(tmp_path)
-    for moment in MOMENTS:
+    # a bare snakemake that is just being loaded has no code of octsim's yet
+    for moment in MOMENTS[command is SNAKEMAKE :]:
         screen, status = stopped_at(moment, command, tmp_path, number)
         text = "\n".join(screen)
         assert "Traceback" not in text
