@@ -50,7 +50,7 @@ class Screen:
         self._running: dict[int, _Work] = {}
         self._began, self._waits_for = time.monotonic(), "reading the workflow"
         self._lock, self._closed = threading.RLock(), threading.Event()
-        self.failed = False
+        self.failed: set[int] = set()
         self._notes = TemporaryDirectory(prefix="octsim-progress-", ignore_cleanup_errors=True)
         if self._moving or quiet:  # else jobs say it themselves
             os.environ[PROGRESS] = self._notes.name
@@ -65,6 +65,7 @@ class Screen:
 
     def begin(self, job: int, name: str, message: str, stays: bool = True) -> None:
         """Show that a job begins; its line comes when it has ended, where this is a terminal."""
+        self.failed.discard(job)  # it is tried again, as on a cluster
         self._running[job] = _Work(name, message, time.monotonic(), stays)
         self._waits_for = ""
         if not self._moving:
@@ -79,7 +80,7 @@ class Screen:
     def fail(self, job: int) -> None:
         """Show nothing more: the job has said what is wrong, and that stands last."""
         self._running.pop(job, None)
-        self.failed = True
+        self.failed.add(job)
 
     def close(self) -> None:
         """Leave the lines that stay."""
@@ -88,6 +89,8 @@ class Screen:
             if self._moving:
                 print(CLEAR, end="", file=self._stream, flush=True)
             self._moving = False
+        if os.environ.get(PROGRESS) == self._notes.name:
+            del os.environ[PROGRESS]
         self._notes.cleanup()
 
     def _move(self) -> None:
