@@ -28,7 +28,7 @@ def edit_of(folder: Path, config: Config, planned: Collection[str]) -> str | Non
     Returns
     -------
     str, optional
-        None if nothing that is there is remade for another key.
+        None if nothing that is there is made anew.
     """
     from octsim.archive.compare_origins import config_changes
     from octsim.archive.run_folder import stage_and_config
@@ -36,6 +36,7 @@ def edit_of(folder: Path, config: Config, planned: Collection[str]) -> str | Non
     rows = {**jobs_of(config), **jobs(beside=True)}
     remade = [name for name in (*rows, "figures", "archive") if name in planned]
     changes: dict[str, str] = {}
+    there = False
     for row in (row for name in remade for row in rows.get(name, ())):
         if not (file := folder / f"{row.name}.nc").is_file():
             continue
@@ -43,6 +44,7 @@ def edit_of(folder: Path, config: Config, planned: Collection[str]) -> str | Non
             recorded = stage_and_config(file)[1]
         except OctsimError:  # whoever reads it says so
             continue
+        there = True
         keys = [
             key.removeprefix("grid.") for key in differing(row.name, config, recorded.to_dict())
         ]
@@ -50,7 +52,8 @@ def edit_of(folder: Path, config: Config, planned: Collection[str]) -> str | Non
             if any(overlap(change.what.removeprefix("grid."), key) for key in keys):
                 changes[change.what] = f"{change.what}: {change.first} → {change.second}"
     if not changes:
-        return None
+        of_what = f"octsim: remaking {', '.join(remade)}, as octsim or a file has changed"
+        return of_what if there else None
     more = [f"{len(changes) - _MOST} more keys"] if len(changes) > _MOST else []
     told = ", ".join([*list(changes.values())[:_MOST], *more])
     return f"octsim: {told}; remaking {', '.join(remade)}"

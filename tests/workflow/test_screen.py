@@ -90,11 +90,11 @@ def test_an_edit_of_a_key_is_told_of_first_and_its_result_last(
     first: tuple[Path, Terminal],
 ) -> None:
     folder, _ = first
-    edited = merged(OVERLAY, {"processing": {"window": "hamming"}})
+    edited = merged(OVERLAY, {"processing": {"window": "hann"}})
     terminal = shown(folder, edited)
     assert re.fullmatch(
         forms(
-            "octsim: processing.window: hann → hamming; remaking phase_slope, figures",
+            "octsim: processing.window: hamming → hann; remaking phase_slope, figures",
             "octsim: phase_slope (…): Transform the spectra; Differentiate their phase …",
             "octsim: figures (…): Draw the figures",
             *RESULT,
@@ -121,6 +121,9 @@ def test_a_pipe_gets_lines_alone_and_quiet_is_quiet(first: tuple[Path, Terminal]
     )
     assert lines[1].startswith("octsim: phase_slope: Transform the spectra")
     assert not set("\r\x1b") & set(done.stderr)
+    (folder / "results" / "tiny" / "spectra.nc").touch()
+    lines = piped(folder, "phase_slope").stderr.splitlines()
+    assert lines[0] == "octsim: remaking phase_slope, as octsim or a file has changed"
     quiet = piped(folder, "--quiet")
     assert (quiet.returncode, quiet.stdout, quiet.stderr) == (0, "", "")
     assert "Job stats:" in piped(folder, "--verbose", "--", "--forcerun", "figures").stderr
@@ -136,7 +139,7 @@ def test_a_config_error_is_the_whole_screen(tmp_path: Path) -> None:
 def test_nothing_follows_the_error_of_a_job(first: tuple[Path, Terminal], tmp_path: Path) -> None:
     assert first
     overlay = merged(TINY, {"focus_law": {"fraction": {"stop": 0.42}}})
-    terminal = shown(tmp_path, overlay, "focus_law")
+    terminal = shown(tmp_path, overlay, "detections")
     assert terminal.ended == 1
     assert terminal.screen()[-1].startswith(
         "octsim: sweep.focus: 'law' given, but there is no law"
