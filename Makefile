@@ -29,26 +29,13 @@ export GIVEN_CONFIG := $(value CONFIG)
 export GIVEN_FILE := $(value FILE)
 export GIVEN_INTO := $(value INTO)
 
-# snakemake itself says little of a config that is missing or not YAML
-define CHECK
-import sys, warnings, octsim
-warnings.simplefilter("ignore")
-try:
-    octsim.load_config(sys.argv[1])
-except octsim.ConfigError as error:
-    sys.exit(f"octsim: {error}")
-endef
-export CHECK
-
 .PHONY: results archive reproduce test test-all test-processors lint format docs bench bench-sweeps \
 	bench-peers kills lock slurm test-slurm bench-slurm clean
 results: .venv/run
-	@$(BIN)/python -P -c "$$CHECK" "$$GIVEN_CONFIG"
-	@$(BIN)/snakemake --cores $(CORES) --configfile "$$GIVEN_CONFIG"
+	@exec $(BIN)/octsim run "$$GIVEN_CONFIG" --cores "$(CORES)"
 
 archive: .venv/run
-	@$(BIN)/python -P -c "$$CHECK" "$$GIVEN_CONFIG"
-	@$(BIN)/snakemake archive --cores $(CORES) --configfile "$$GIVEN_CONFIG"
+	@exec $(BIN)/octsim run "$$GIVEN_CONFIG" archive --cores "$(CORES)"
 
 reproduce: .venv/run
 	@test -n "$$GIVEN_FILE" -a -n "$$GIVEN_INTO" || { echo "octsim: make reproduce needs FILE= and INTO=" >&2; exit 2; }

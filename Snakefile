@@ -23,6 +23,11 @@ from octsim.base.surroundings import settle_imports, settle_words
 
 settle_imports()
 settle_words()
+from octsim.cli.stopped import DEAF, stops_at_signals, stops_by_cancelling
+from psutil import Process
+
+if workflow.is_main_process and workflow.modifier.is_main_snakefile():
+    stops_at_signals(lambda: Process().children(recursive=True))
 
 from filelock import FileLock, Timeout
 from octsim.archive.report_file import REPORT, SHOWN, report_code
@@ -31,6 +36,7 @@ from octsim.base.errors import OctsimError
 from octsim.base.files import digest_of, is_regular, require_folder
 from octsim.base.provenance import lock_file, source_digest
 from octsim.cli.job_server import PYTHON, SOCKET, start
+from octsim.cli.told import edit_of, result_of
 from octsim.config.derive import parts_of
 from octsim.config.load import load_and_tell
 from octsim.config.models import Config
@@ -43,25 +49,39 @@ from octsim.datasets.stage import Stage
 from octsim.stages.cost_estimate import check_budget, expected
 from octsim.stages.run_id import begin, is_latest
 from octsim.stages.workload import shares_of
+from snakemake.logging import logger
+from snakemake_logger_plugin_octsim import RESULT
 
+
+def say(line: str) -> None:
+    """Say a line in the order of what snakemake says, if octsim shows that; else at once."""
+    if workflow.logger_manager.get_log_handlers():
+        logger.info(line)
+    else:
+        print(line, file=sys.stderr)
+
+
+if workflow.cores is not None and workflow.cores < 1:
+    sys.exit(f"octsim: --cores: {workflow.cores} given; give 1 or more")
 try:
     # the files themselves too, as snakemake's own reading lets a key stand twice
     run, said = load_and_tell(*workflow.configfiles, config)
     require_folder(Path(f"results/{run.run}"))
     estimate = expected(run)
     if estimate.is_large:
-        print(f"octsim: {estimate}", file=sys.stderr)
+        say(f"octsim: {estimate}")
     if workflow.is_main_process and (remark := clock.set_back(Path(f"results/{run.run}"))):
-        print(f"octsim: warning: {remark}", file=sys.stderr)
+        say(f"octsim: warning: {remark}")
 except OctsimError as error:
     sys.exit(f"octsim: {error}")
 if run.run == Config().run and run != Config():
-    remark = "run: not given, so this goes to results/thesis in the place of the thesis itself"
-    print(f"octsim: warning: {remark}", file=sys.stderr)
+    said.insert(
+        0, "run: not given, so this goes to results/thesis in the place of the thesis itself"
+    )
 for line in told(run):
-    print(f"octsim: {line}", file=sys.stderr)
+    say(f"octsim: {line}")
 for remark in said:
-    print(f"octsim: warning: {remark}", file=sys.stderr)
+    say(f"octsim: warning: {remark}")
 
 sys.executable = shlex.quote(PYTHON)  # snakemake writes it into commands of a shell as it is
 os.environ["OCTSIM_RUN"] = str(os.getpid())  # a job ends with the run that started it
@@ -157,9 +177,23 @@ def needs(*stages: str) -> dict[str, Callable[[object, int], int]]:
     }
 
 
+def result(remarks: tuple[str, ...] = tuple(said)) -> list[str]:
+    """Return what the run comes to, a line each."""
+    asked = {Path(job.log[0]).stem for job in dag().jobs if job.log}
+    return result_of(Path(FOLDER), run, asked, remarks)
+
+
+def dag() -> object:
+    """Return snakemake's jobs."""
+    return workflow.persistence.dag
+
+
+RESULT.append(lambda: result(()))  # where nothing is to be done, the config's warnings stand above
+
+
 onstart:
     # what is to be made, which may be less than all, may take more than was confirmed
-    PLANNED.update(job.rule.name for job in workflow.persistence.dag.needrun_jobs())
+    PLANNED.update(job.rule.name for job in dag().needrun_jobs())
     try:
         check_budget(run, estimate.of(*PLANNED), Path(FOLDER))
     except OctsimError as error:
@@ -171,17 +205,21 @@ onstart:
         sys.exit(f"octsim: another run is at work on {FOLDER}; wait for it or stop it")
     begin(Path(FOLDER))
     if workflow.is_main_process and workflow.local_exec:
+        sys.executable = shlex.join([*DEAF, PYTHON])
         SERVER.append(start())
+    if workflow.is_main_process and workflow.modifier.is_main_snakefile():
+        # again, as snakemake has its own by now
+        if workflow.local_exec:
+            stops_at_signals(lambda: Process().children(recursive=True))
+        else:
+            stops_by_cancelling()
+    if edit := edit_of(Path(FOLDER), run, PLANNED):
+        say(edit)
 
 
 onsuccess:
-    for stage in [*jobs_of(run), *sorted(PLANNED.intersection([*jobs(beside=True), "report"]))]:
-        found = Path(f"{FOLDER}/logs/{stage}.log")
-        # there is none of what was not asked for
-        lines = found.read_text("utf-8").splitlines() if found.is_file() else []
-        told = [line for line in lines if line.startswith("octsim: ")]
-        print(*told, sep="\n", end="\n" if told else "", file=sys.stderr)
-    print(f"octsim: datasets and figures are in {FOLDER}/", file=sys.stderr)
+    for line in result():
+        say(line)
     wanted = [Path(file).name for stage in SHARES for file in shares(stage)]
     for share in Path(f"{FOLDER}/shares").glob("*.npz"):
         if share.name not in wanted:  # of a run that was given up, cut otherwise

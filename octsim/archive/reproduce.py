@@ -5,10 +5,10 @@ checkout's, and all that is written stands in the folder.
 """
 
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Sequence
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -16,37 +16,20 @@ import xarray as xr
 
 from octsim.archive.recorded import Recorded
 from octsim.archive.run_folder import run_in
-from octsim.base.errors import DatasetError, OctsimError, not_installed
+from octsim.base.carried import workflow_folder
+from octsim.base.errors import DatasetError, OctsimError
 from octsim.base.files import require_empty, require_folder, whole
-from octsim.base.provenance import PACKAGE
+from octsim.base.say import WORDS
 from octsim.config.load import load_config
 from octsim.config.models import Cache, Measured
 from octsim.datasets.files import read, write
 from octsim.studies.calibration.expansion_record import series_in
 
-CHECKOUT = PACKAGE.parent
 SERIES = "series.nc"
 """A measured series that an expansion was made from, in the folder."""
 _OF_FILES = ("measured", "expansion", "match")
 """Datasets that are made from a lab's own spectra, where a config names some."""
 LOG = "snakemake.log"
-
-
-def require_workflow() -> None:
-    """Check that runs can be made here.
-
-    Raises
-    ------
-    OctsimError
-        If the package stands in no checkout, or snakemake is not installed.
-    """
-    if not (CHECKOUT / "Snakefile").is_file():
-        raise OctsimError(
-            f"reproduce: needs a checkout of octsim, with a Snakefile; {PACKAGE} is in none; "
-            "in one, `make reproduce FILE=... INTO=...` does it"
-        )
-    if find_spec("snakemake") is None:
-        raise not_installed("snakemake", "run")
 
 
 def chosen(original: Recorded, only: Sequence[str] | None) -> Recorded:
@@ -98,15 +81,17 @@ def reproduce(original: Recorded, folder: Path, cores: int) -> Recorded:
     results = Path("results") / original.config.run
     stages = ", ".join(original.datasets)
     print(f"octsim: making {stages} in {folder / results}; {LOG} there tells", file=sys.stderr)
+    workflow = workflow_folder()
     command = [
-        sys.executable, "-m", "snakemake", "--snakefile", str(CHECKOUT / "Snakefile"),
+        sys.executable, "-m", "snakemake", "--snakefile", str(workflow / "Snakefile"),
         "--profile", "none",  # none of the user's
-        "--workflow-profile", str(CHECKOUT / "profiles" / "default"), "--directory", str(folder),
+        "--workflow-profile", str(workflow / "profiles" / "default"), "--directory", str(folder),
         "--configfile", str(file), "--cores", str(cores),
         *(str(results / f"{stage}.nc") for stage in original.datasets),
     ]  # fmt: skip
     with (folder / LOG).open("w", encoding="utf-8") as log:
-        done = subprocess.run(command, cwd=folder, stdout=log, stderr=log, check=False)
+        told = {**os.environ, WORDS: "verbose"}
+        done = subprocess.run(command, cwd=folder, stdout=log, stderr=log, env=told, check=False)
     if done.returncode != 0:
         raise OctsimError(f"the run failed{_reason_in(folder / LOG)}; see {folder / LOG}")
     run = run_in(folder / results)

@@ -6,7 +6,6 @@ there is of the sources that are there now. A place that only can be read serves
 
 import os
 import shutil
-import sys
 import tempfile
 import time
 from collections.abc import Iterable
@@ -86,8 +85,3 @@ def remove_unused(place: Path) -> None:
         for folder in place.glob(f"{_PREFIX}*"):
             if folder.stat().st_mtime < time.time() - _UNUSED:
                 shutil.rmtree(folder, ignore_errors=True)
-
-
-def say(text: str) -> None:
-    """Say something of compiling to who waits for it."""
-    print(f"octsim: {text}", file=sys.stderr, flush=True)

@@ -9,10 +9,12 @@ import numba
 from filelock import FileLock, Timeout
 from numba.core.caching import FunctionCache, _Cache
 
-from octsim.base.code_folder import folder_for, nowhere, places, remove_unused, say, use
+from octsim.base.code_folder import folder_for, nowhere, places, remove_unused, use
+from octsim.base.say import note, say
 
 _LONGEST = 1800.0  # s to wait for another process, which may be stopped
 _said: set[str] = set()
+_told_of: set["KeptCode"] = set()  # that are being compiled: some call others
 
 
 class KeptCode(_Cache):
@@ -61,7 +63,7 @@ class KeptCode(_Cache):
         if found is None and self._acquire():  # another may have compiled it meanwhile
             found = self._read(sig, target_context)
         if found is None and self._opened():  # else it is said that it is not once
-            _say_once("compiling the tracer for this machine … (once)")
+            self._tell("compiling the tracer for this machine … (once)")
         return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -109,7 +111,7 @@ class KeptCode(_Cache):
             try:
                 lock.acquire(timeout=0)
             except Timeout:
-                say("another process is compiling the tracer; waiting for it")
+                self._tell("another process is compiling the tracer; waiting for it")
                 lock.acquire(timeout=_LONGEST, poll_interval=0.2)
             self._lock = lock
             remove_unused(folder.parent)
@@ -117,8 +119,20 @@ class KeptCode(_Cache):
             return False
         return True
 
+    def _tell(self, text: str) -> None:
+        """Tell what is waited for: on a terminal where progress is shown, else once in a line."""
+        _told_of.add(self)
+        if note(text):
+            logging.getLogger(__name__).info("%s", text)
+        else:
+            _say_once(text)
+
     def done(self) -> None:
         """Let others compile, however this went."""
+        if self in _told_of:
+            _told_of.remove(self)
+            if not _told_of:
+                note("")
         if self._lock:
             self._lock.release()
             self._lock = None

@@ -15,6 +15,8 @@ from typing import Any, NamedTuple
 
 from octsim.base.errors import OctsimError, OctsimWarning
 from octsim.base.files import whole
+from octsim.base.say import noting_for, say
+from octsim.cli.job_server import is_alive
 from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.datasets.catalog import CATALOG, jobs
@@ -50,6 +52,7 @@ def do(task: Task) -> int:
     """Do a job and return its exit status; what a user can mend is said in one line."""
     folder, begin = Path(task.folder), time.monotonic()
     end_with_the_run(folder)
+    noting_for(Path(task.log).stem)
     Path(task.log).parent.mkdir(parents=True, exist_ok=True)
     logging.basicConfig(
         filename=task.log, encoding="utf-8", level=logging.INFO, format="%(message)s", force=True
@@ -64,7 +67,7 @@ def do(task: Task) -> int:
             _measure(folder / "benchmarks" / f"{task.name}.tsv", time.monotonic() - begin)
     except OctsimError as error:
         logging.error("%s", error)
-        print(f"octsim: {error}", file=sys.stderr)
+        say(str(error))
         return 1
     return 0
 
@@ -79,20 +82,12 @@ def end_with_the_run(folder: Path) -> None:
     def watch() -> None:
         while is_latest(folder):  # once a second, as that asks a file server
             for _ in range(10):
-                if os.getppid() != parent or not _is_alive(run):
+                if os.getppid() != parent or not is_alive(run):
                     os._exit(1)
                 time.sleep(0.1)
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()
-
-
-def _is_alive(process: int) -> bool:
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    return True
 
 
 def _make(task: Task, folder: Path, config: Config) -> None:
@@ -147,8 +142,7 @@ def _archive(task: Task, folder: Path, config: Config) -> None:
     packed = pack(folder, config, Path(next(iter(task.output.values()))))
     for remark in packed.remarks:
         logging.warning("octsim: warning: %s", remark)
-        print(f"octsim: warning: {remark}", file=sys.stderr)
-    logging.info("%s", packed)
+    logging.info("octsim: %s", packed)
 
 
 def _measure(path: Path, seconds: float) -> None:

@@ -16,12 +16,15 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import traceback
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from octsim.base.say import say
 from octsim.base.surroundings import settled
+from octsim.cli.stopped import DEAF
 
 PYTHON = sys.executable
 SOCKET = "OCTSIM_JOB_SERVER"
@@ -53,7 +56,7 @@ def start() -> "tempfile.TemporaryDirectory[str] | None":
         if writable(places()) is None:  # then the jobs of this run share what they compile
             os.environ[VARIABLE] = f"{folder.name}/compiled"
         listener.listen(64)  # from now on who asks is heard
-        command = [PYTHON, "-m", "octsim.cli.job_server"]
+        command = [*DEAF, PYTHON, "-m", "octsim.cli.job_server"]
         subprocess.Popen(
             [*command, str(listener.fileno()), str(os.getpid())],
             pass_fds=[listener.fileno()], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
@@ -81,15 +84,26 @@ def ask(task: Mapping[str, Any]) -> int | None:
             return None
         with contextlib.suppress(OSError):
             status = connection.recv(1)
-    if not status:
-        print("octsim: the job was killed; is there memory enough for it?", file=sys.stderr)
+    time.sleep(
+        0 if status else _LOOK
+    )  # for who ends this process too, as a run that is stopped does
+    if not status and is_alive(int(os.environ["OCTSIM_RUN"])):
+        say("the job was killed; is there memory enough for it?")
     return status[0] if status else 1
+
+
+def is_alive(process: int) -> bool:
+    """Return whether there is a process of a number."""
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    return True
 
 
 def serve(listener: socket.socket, parent: int) -> None:
     """Fork a process for each task, until the parent is gone."""
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the forks
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent has it, and says what is to be done
     listener.settimeout(_LOOK)
     _load()
     while os.getppid() == parent:
@@ -116,7 +130,6 @@ def _load() -> None:
 def _do(connection: socket.socket) -> None:
     """Do a task in a fork, and end it."""
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-    signal.signal(signal.SIGINT, signal.default_int_handler)
     status = 1
     try:
         head, streams, _, _ = socket.recv_fds(connection, _HEAD, len(_STREAMS))
@@ -131,8 +144,6 @@ def _do(connection: socket.socket) -> None:
         from octsim.cli.job import Task, do
 
         status = do(Task(**task))
-    except KeyboardInterrupt:
-        status = 128 + signal.SIGINT
     except BaseException:
         traceback.print_exc()
     finally:

@@ -1,6 +1,7 @@
 """The command `octsim`: its parser, and how it ends."""
 
 import argparse
+import itertools
 import os
 import sys
 import warnings
@@ -21,12 +22,13 @@ from octsim.cli import (
     measured,
     report,
     reproduce,
+    run,
     show,
     stages,
 )
 
 MODULES = (
-    init, check, show, measured, stages, report, archive, compare, reproduce, cache, completion,
+    init, check, run, show, measured, stages, report, archive, compare, reproduce, cache, completion,
 )  # fmt: skip
 """Each adds commands of its own, and imports what does their work when one is asked for."""
 
@@ -58,7 +60,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     commands = parser.add_subparsers(required=True, metavar="command")
     for module in MODULES:
         module.add(commands)
-    given = parser.parse_args(arguments)
+    given = _parsed(parser, sys.argv[1:] if arguments is None else arguments)
     do: Callable[[Namespace], int] = given.do
     try:
         with warnings.catch_warnings():
@@ -69,7 +71,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # who reads has seen enough, as head and less have
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
+    except KeyboardInterrupt:
+        print("octsim: stopped", file=sys.stderr)
+        return 130
     except OctsimError as error:
         for line in str(error).splitlines():
             print(f"octsim: {line}", file=sys.stderr)
         return int(given.failed)
+
+
+def _parsed(parser: Parser, arguments: Sequence[str]) -> Namespace:
+    """Return the arguments; `run` takes its words on both sides of options, and flags after --."""
+    if list(arguments[:1]) != ["run"]:
+        return parser.parse_args(arguments)
+    own = list(itertools.takewhile(lambda word: word != "--", arguments))
+    given, more = parser.parse_known_args(own)
+    if wrong := [word for word in more if word.startswith("-")]:
+        parser.error(f"unrecognized arguments: {' '.join(wrong)}; write snakemake's own after --")
+    given.words += more
+    given.flags = list(arguments[len(own) + 1 :])
+    return given

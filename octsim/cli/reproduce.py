@@ -8,6 +8,7 @@ from typing import Any
 
 from octsim.base.errors import OctsimWarning
 from octsim.cli.compare import add_tolerance
+from octsim.cli.run import cores, require_workflow
 
 
 def add(commands: Any) -> None:
@@ -23,17 +24,10 @@ def add(commands: Any) -> None:
     parser.add_argument("folder", type=Path, help="where to make it; empty, or not there yet")
     add_tolerance(parser)
     parser.add_argument(
-        "--cores", type=_cores, default=2, metavar="NUMBER", help="default: %(default)s"
+        "--cores", type=cores, default=2, metavar="NUMBER", help="default: %(default)s"
     )
     parser.add_argument("--only", nargs="+", metavar="STAGE", help="some of the datasets")
     parser.set_defaults(do=run_reproduce, failed=2)
-
-
-def _cores(text: str) -> int:
-    """Read a number of cores: with none, snakemake would wait for ever."""
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text} given; give 1 or more")
-    return int(text)
 
 
 def run_reproduce(given: argparse.Namespace) -> int:
@@ -41,7 +35,7 @@ def run_reproduce(given: argparse.Namespace) -> int:
     from octsim.archive.compare import compare_recorded
     from octsim.archive.compare_text import lines
     from octsim.archive.recorded import recorded
-    from octsim.archive.reproduce import chosen, reproduce, require_workflow
+    from octsim.archive.reproduce import chosen, reproduce
 
     folder = given.folder.expanduser().absolute()
     try:

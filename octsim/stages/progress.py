@@ -1,17 +1,18 @@
-"""How far a stage is: a bar with rate and time left on a terminal, a line a minute in the log."""
+"""How far a stage is: shown on a terminal as it goes, and a line a minute in the log."""
 
 import io
 import logging
+import time
 from collections.abc import Iterator
-from typing import Any
 
 from tqdm import tqdm
 
 from octsim.base.compile_time import compiled_for
+from octsim.base.say import note
 from octsim.datasets.streams import Part, Stream
 
 _BETWEEN_LINES = 60.0  # s
-_AFTER = 2.0  # s; what takes less needs no bar
+_BETWEEN_NOTES = 0.5  # s
 
 
 class _Lines(io.StringIO):
@@ -23,11 +24,14 @@ class _Lines(io.StringIO):
         return len(text)
 
 
-def _leave_out(seconds: float, *bars: "tqdm[Any]") -> None:
-    """Have bars begin when tracing did, after what compiling has taken."""
-    for bar in bars:
-        if not bar.disable:
-            bar.start_t, bar.last_print_t = bar.start_t + seconds, bar.last_print_t + seconds
+def words(done: int, points: int, seconds: float) -> str:
+    """Return how many points are done, and how long the others take at this rate."""
+    left = (
+        f", {tqdm.format_interval(seconds / done * (points - done))} left"
+        if 0 < done < points
+        else ""
+    )
+    return f"{done} of {points} points{left}"
 
 
 def watched(stream: Stream) -> Stream:
@@ -35,22 +39,25 @@ def watched(stream: Stream) -> Stream:
     layout = stream.layout
 
     def parts() -> Iterator[Part]:
-        with (
-            tqdm(
-                total=layout.points, desc=layout.stage, unit="point", delay=_AFTER, leave=False,
-                disable=None, dynamic_ncols=True,
-            ) as bar,
-            tqdm(
-                total=layout.points, desc=layout.stage, unit="point", file=_Lines(), ascii=True,
-                mininterval=_BETWEEN_LINES, maxinterval=_BETWEEN_LINES, delay=_BETWEEN_LINES,
-                ncols=100,
-            ) as lines,
-        ):  # fmt: skip
-            compiled_for()  # before these bars
+        with tqdm(
+            total=layout.points, desc=layout.stage, unit="point", file=_Lines(), ascii=True,
+            mininterval=_BETWEEN_LINES, maxinterval=_BETWEEN_LINES, delay=_BETWEEN_LINES,
+            ncols=100,
+        ) as lines:  # fmt: skip
+            compiled_for()  # before this
+            began, noted = time.monotonic(), -_BETWEEN_NOTES
             for part in stream.parts:
                 yield part
-                _leave_out(compiled_for(), bar, lines)
-                bar.update(part.points)
+                # they begin when tracing did, after what compiling has taken
+                spent = compiled_for()
+                began += spent
+                lines.start_t, lines.last_print_t = (
+                    lines.start_t + spent,
+                    lines.last_print_t + spent,
+                )
                 lines.update(part.points)
+                if (now := time.monotonic()) - noted > _BETWEEN_NOTES:
+                    note(words(int(lines.n), layout.points, now - began))
+                    noted = now
 
     return Stream(layout, parts())

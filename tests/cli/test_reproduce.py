@@ -284,10 +284,10 @@ def test_what_reproducing_needs_and_is_not_there_is_one_line_with_its_remedy(
         return line
 
     with monkeypatch.context() as without:
-        without.setattr("octsim.archive.reproduce.find_spec", lambda _: None)
+        without.setattr("octsim.cli.run.find_spec", lambda _: None)
         assert line() == "octsim: snakemake is not installed; run: pip install 'octsim[run]'"
-    monkeypatch.setattr("octsim.archive.reproduce.CHECKOUT", tmp_path)
-    assert line().startswith("octsim: reproduce: needs a checkout of octsim")
+    monkeypatch.setattr("octsim.cli.run.workflow_folder", lambda: tmp_path)
+    assert line() == f"octsim: {tmp_path}: no Snakefile; install octsim again"
     assert list(tmp_path.iterdir()) == []
 
 

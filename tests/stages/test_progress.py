@@ -2,11 +2,12 @@
 
 import logging
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 import octsim
-from octsim.base import compile_time
+from octsim.base import compile_time, say
 from octsim.config.load import load_config
 from octsim.datasets.streams import Part, Stream, in_memory
 from octsim.stages import progress
@@ -47,6 +48,19 @@ def test_a_bar_begins_when_tracing_does(
         list(progress.watched(Stream(stream.layout, compiling())).parts)
     # it began, as far as the bar knows, in the future
     assert any("5/5 [-1" in record.getMessage() for record in caplog.records)
+
+
+def test_how_far_a_job_is_stands_where_the_screen_looks(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(say._Job, "name", "focus_scan")
+    config = load_config({"tracing": {"rays": 50}, "focus_scan": {"focus": {"num": 5}}})
+    list(progress.watched(octsim.focus_scan.stream(config)).parts)
+    assert not list(tmp_path.iterdir())  # nobody looks
+    monkeypatch.setenv(say.PROGRESS, str(tmp_path))
+    list(progress.watched(octsim.focus_scan.stream(config)).parts)
+    assert (tmp_path / "focus_scan").read_text() == "5 of 5 points"
+    assert progress.words(25, 100, 50.0) == "25 of 100 points, 02:30 left"
 
 
 def test_what_is_short_is_not_told_of(caplog: pytest.LogCaptureFixture) -> None:
