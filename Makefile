@@ -13,6 +13,7 @@
 # make test-slurm                             the same results on a private Slurm of one node
 # make bench-slurm                            what Slurm adds to each job
 # make kills                                  30 kills at random moments, 30 same results
+# make mutants [NUMBER=300]                   wrong changes to the package that no test notices, long
 # make lock                                   resolve the dependencies anew
 PYTHON ?= python3
 CORES ?= 2
@@ -30,7 +31,7 @@ export GIVEN_FILE := $(value FILE)
 export GIVEN_INTO := $(value INTO)
 
 .PHONY: results archive reproduce test test-all test-processors lint format docs bench bench-sweeps \
-	bench-peers kills lock slurm test-slurm bench-slurm clean
+	bench-peers kills mutants lock slurm test-slurm bench-slurm clean
 results: .venv/run
 	@exec $(BIN)/octsim run "$$GIVEN_CONFIG" --cores "$(CORES)"
 
@@ -123,6 +124,10 @@ bench-peers: .venv-peers/rays/run .venv-peers/waves/run .venv-peers/cycles/run
 
 kills: .venv/dev
 	OCTSIM_KILLS=30 $(BIN)/pytest -n 2 tests/workflow/test_kill.py tests/instrument/test_point_store.py -k killed
+
+NUMBER ?= 300
+mutants: .venv/dev
+	PYTHONPATH=benchmarks $(BIN)/python -P -m mutants --number $(NUMBER) --jobs $(CORES) --write
 
 clean:
 	rm -rf .venv .venv-peers results .snakemake

@@ -5,14 +5,18 @@ import math
 import struct
 import subprocess
 import sys
+from collections.abc import Callable
+from importlib.metadata import version
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from llvmlite.binding.targets import FeatureMap
 
 from octsim.config.load import load_config
+from octsim.instrument import point_keys
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.point_entries import light_from_bytes, light_to_bytes
 from octsim.instrument.point_keys import instrument_key, point_key
@@ -153,6 +157,46 @@ def test_other_code_or_another_library_or_processor_makes_another_key(
     assert instrument_key(PARTS, "1a2c") != key
     monkeypatch.setattr("octsim.instrument.point_keys._machine_code", lambda: {"numpy": "0"})
     assert instrument_key(PARTS, "1a2b") != key
+
+
+@pytest.mark.parametrize(
+    ("of", "name", "other"),
+    [
+        ("llvmlite.binding", "get_host_cpu_name", lambda: "another"),
+        ("llvmlite.binding", "get_host_cpu_features", lambda: FeatureMap({"avx512f": False})),
+        ("platform", "libc_ver", lambda: ("glibc", "0.0")),
+    ],
+    ids=["processor", "what it can do", "libc"],
+)
+def test_whatever_machine_code_hangs_on_makes_another_key(
+    of: str, name: str, other: Callable[..., object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    point_keys._machine_code.cache_clear()
+    key = instrument_key(PARTS, "1a2b")
+    monkeypatch.setattr(f"{of}.{name}", other)
+    point_keys._machine_code.cache_clear()
+    changed = instrument_key(PARTS, "1a2b")
+    monkeypatch.undo()
+    point_keys._machine_code.cache_clear()
+    assert changed != key
+    assert instrument_key(PARTS, "1a2b") == key
+
+
+@pytest.mark.parametrize("library", ["numpy", "numba", "llvmlite"])
+def test_another_version_of_a_library_makes_another_key(
+    library: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    point_keys._machine_code.cache_clear()
+    key = instrument_key(PARTS, "1a2b")
+    monkeypatch.setattr(
+        "octsim.instrument.point_keys.version",
+        lambda name: "0.0" if name == library else version(name),
+    )
+    point_keys._machine_code.cache_clear()
+    changed = instrument_key(PARTS, "1a2b")
+    monkeypatch.undo()
+    point_keys._machine_code.cache_clear()
+    assert changed != key
 
 
 @pytest.mark.parametrize("part", [math.nan, math.inf, {1, 2}, np.ones(2)])

@@ -121,6 +121,27 @@ def test_a_code_that_changes_traces_anew(
     assert count(sweep(3)) == (3, 0)
 
 
+@pytest.mark.parametrize(
+    "edited",
+    ["octsim.schemes.vogel", "octsim.instrument.build", "octsim.instrument.point_entries"],
+)
+def test_an_edit_of_what_traces_or_builds_or_writes_a_point_traces_anew(
+    edited: str, count: Callable[..., tuple[int, int]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def code_with(edited: str) -> None:
+        monkeypatch.setattr(
+            "octsim.instrument.instrument.source_digest",
+            lambda *modules: " ".join(f"{name} edited" * (name == edited) for name in modules),
+        )
+
+    code_with("")
+    assert count(sweep(2)) == (2, 0)
+    code_with(edited)
+    assert count(sweep(2)) == (2, 0)
+    code_with("")
+    assert count(sweep(2)) == (0, 2)
+
+
 def same(one: Any, other: Any) -> bool:
     return all(
         np.array_equal(x, y) if isinstance(x, np.ndarray) else x == y

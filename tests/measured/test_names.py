@@ -103,7 +103,7 @@ def test_headings_may_be_times(headings: list[str], times: list[float], unit: st
 @pytest.mark.parametrize(
     "headings",
     [["1", "2", "3"], ["0", "1"], ["3", "1"], ["1", "1"], ["7"], ["1 ms", "2 s"], ["1 mm", "2 mm"],
-     ["a", "b"], ["", ""], []],
+     ["a", "b"], ["", ""], [], ["0.5 ms", "1 ms", "dark"], ["dark", "0.5", "2"]],
 )  # fmt: skip
 def test_other_headings_are_no_times(headings: list[str]) -> None:
     assert times_of(headings)[0] is None

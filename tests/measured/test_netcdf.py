@@ -72,6 +72,14 @@ def test_scales_are_applied(tmp_path: Path) -> None:
     np.testing.assert_array_equal(read(tmp_path / "a"), COUNTS * 0.5 + 3)
 
 
+@pytest.mark.parametrize("attributes", [{}, {"_Unsigned": "false"}])
+def test_signed_numbers_stay_below_nought(attributes: dict[str, str], tmp_path: Path) -> None:
+    counts = COUNTS.astype("i4") - 20_000
+    assert counts.min() < 0
+    write(tmp_path / "a", "i4", counts, **attributes)
+    np.testing.assert_array_equal(read(tmp_path / "a"), counts)
+
+
 def test_numbers_that_stand_for_unsigned_ones_are_these(tmp_path: Path) -> None:
     write(tmp_path / "a", "i2", COUNTS.view("i2"), _Unsigned="true")
     found = read(tmp_path / "a")

@@ -1,5 +1,7 @@
 """Gaussian fits: known curves come back, curves without a peak are named."""
 
+import math
+
 import numpy as np
 import pytest
 import reference
@@ -86,6 +88,25 @@ def test_foci_without_a_number_are_left_out() -> None:
 @pytest.mark.parametrize("intensity", [np.zeros(41), np.full(41, np.nan)], ids=["dark", "nothing"])
 def test_no_light_is_named(intensity: NDArray[np.float64]) -> None:
     assert fit_gaussian(FOCI, intensity).status is FitStatus.NO_LIGHT
+
+
+@pytest.mark.parametrize("reached", [0.45, 0.6, 0.88])
+def test_a_plateau_up_to_the_last_or_from_the_first_focus_is_no_peak(reached: float) -> None:
+    rise = np.minimum(FOCI, reached)
+    for intensity in (rise, rise[::-1].copy()):
+        fit = fit_gaussian(FOCI, intensity)
+        assert fit.status is FitStatus.NO_INTERIOR_PEAK
+        assert np.isnan(fit.parameters).all()
+
+
+def test_a_width_is_the_standard_deviation_of_the_gaussian() -> None:
+    at = np.array([0.0, 1.0, 2.0])
+    assert gaussian(at, 0.0, 1.0, 2.0, 0.5) == pytest.approx(
+        [2.5, 0.5 + 2 / math.sqrt(math.e), 0.5 + 2 / math.e**2]
+    )
+    # half of the height is at 2 √(2 ln 2) widths apart
+    half = math.sqrt(2 * math.log(2)) * 0.3
+    assert gaussian(np.array([half]), 0.0, 0.3, 1.0, 0.0) == pytest.approx([0.5])
 
 
 def test_noise_makes_no_peak_of_a_rise() -> None:
