@@ -2,6 +2,7 @@
 
 import ast
 import copy
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -39,6 +40,8 @@ class Change(NamedTuple):
     now: str
     kind: str
     """Of what is changed: comparison, arithmetic, condition, constant or answer."""
+    number: int = 1
+    """Of those of a file that read the same, in the order of its text."""
 
     def made(self, source: bytes) -> bytes:
         """Return the file's content with this change."""
@@ -47,7 +50,8 @@ class Change(NamedTuple):
     @property
     def name(self) -> str:
         """What tells it from others, wherever in its file the line is."""
-        return f"{self.module}: {self.was} -> {self.now} in {self.text}"
+        nth = f" ({self.number})" if self.number > 1 else ""
+        return f"{self.module}: {self.was} -> {self.now}{nth} in {self.text}"
 
 
 def changes(root: Path, module: str) -> list[Change]:
@@ -72,7 +76,11 @@ def changes(root: Path, module: str) -> list[Change]:
         texts = ast.unparse(node), ast.unparse(now)
         text = lines[node.lineno - 1].decode().strip()
         found.append(Change(module, node.lineno, text, begin, end, *texts, kind))
-    return sorted(found, key=lambda one: (one.begin, one.end, one.now))
+    same = Counter[str]()
+    for place, one in enumerate(sorted(found, key=lambda one: (one.begin, one.end, one.now))):
+        same[one.name] += 1
+        found[place] = one._replace(number=same[one.name])
+    return found
 
 
 def _within(node: ast.AST) -> Iterator[tuple[ast.expr, ast.expr, str]]:

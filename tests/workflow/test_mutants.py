@@ -103,6 +103,14 @@ def test_a_change_leaves_the_rest_of_a_file_as_it_was(checkout: Path) -> None:
         assert made != source
 
 
+def test_changes_that_read_the_same_are_told_apart(checkout: Path) -> None:
+    twice = "def two(x: int) -> bool:\n    return x + 1 < 1\n"
+    (checkout / "octsim/optics/part.py").write_text(twice + twice)
+    found = changes(checkout, "octsim/optics/part.py")
+    assert sum((one.was, one.now) == ("1", "2") for one in found) == 4
+    assert len({one.name for one in found}) == len(found)
+
+
 def test_tests_of_a_module_have_its_name_or_import_it_or_what_imports_it(checkout: Path) -> None:
     tests = OwnTests(checkout)
     near, far = "tests/optics/test_part.py", "tests/config/test_farther.py"
