@@ -4,7 +4,7 @@ import re
 
 LONGEST = 300
 """Letters of a line."""
-_LONG_WORD = re.compile(r"(\S{8})\S{12,}(\S{25})")
+_LONG_WORD = re.compile(r"\S{45,}")
 """As the path of a file in deep folders; its end tells more than its start."""
 _CUT = " ... "
 
@@ -23,12 +23,14 @@ def printable(text: object) -> str:
 
 
 def one_line(text: object) -> str:
-    """Return text as one line that may be printed, cut if it is long: first its long words."""
+    """Return text as one line that may be printed, cut if it is long: its longest words first."""
     said = printable(_without_middle(str(text), 20_000))  # of megabytes not all is looked at
     if len(said) <= LONGEST:
         return said
-    # its end says what to do
-    return _without_middle(_LONG_WORD.sub(r"\1...\2", said), LONGEST)
+    for word in sorted(set(_LONG_WORD.findall(said)), key=len, reverse=True):
+        if len(said) > LONGEST:
+            said = said.replace(word, f"{word[:8]}...{word[-25:]}")
+    return _without_middle(said, LONGEST)  # whose end says what to do
 
 
 def _without_middle(text: str, most: int) -> str:

@@ -23,9 +23,7 @@ _KAPPA = (
     "extinctioncoefficientk", "kextinctioncoefficient", "extinctioncoefficientkappa",
 )  # fmt: skip
 _COLUMNS = dict.fromkeys(_N, "n") | dict.fromkeys(_KAPPA, "kappa")
-_KNOWN = (
-    "known are wavelength, lambda or wl with a unit, n, n_real or index, kappa, k or extinction"
-)
+_KNOWN = "known are wavelength, lambda, wl, n, n_real, index, kappa and k"
 _MICROMETRES = (0.01, 99.0)
 """Between these are the wavelengths of refractiveindex.info, whose heading is wl alone, in µm."""
 

@@ -12,7 +12,7 @@ from octsim.base.errors import DatasetError
 from octsim.config.units import inverted, parse_length
 from octsim.phase.measured_headings import listed, of_errors, parse
 from octsim.phase.measured_netcdf import read_variables
-from octsim.phase.measured_tables import FORM, Table, is_netcdf, numbers, read_table, shown
+from octsim.phase.measured_tables import Table, is_netcdf, numbers, read_table, shown
 from octsim.phase.stand_ins import stand_ins
 
 Array = NDArray[np.float64]
@@ -26,8 +26,8 @@ AXES = ("wavenumber", "wavelength")
 SHORTEST, LONGEST = 0.05, 100.0
 """Wavelengths, µm, between which they may be those of a spectrometer: 'um' is no 'nm'."""
 _FORM = (
-    "write a first column headed 'wavelength (nm)' or 'wavenumber (1/um)' and a column of "
-    f"intensity for each spectrum, with a name each, {FORM}"
+    "write a first column headed 'wavelength (nm)' or 'wavenumber (1/um)' and a named "
+    "column for each spectrum"
 )
 
 

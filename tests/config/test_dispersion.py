@@ -238,14 +238,18 @@ FILES: list[tuple[str, dict[str, str], str]] = [
     (
         "wavelength (nm),x\n600,1.4\n",
         {},
-        "has no column of n by its first row, 'wavelength (nm)', 'x'; known are wavelength, lambda or wl with a unit, n, n_real or",
+        "has no column of n by its first row, 'wavelength (nm)', 'x'; known are wavelength, lambda, wl, n, n_real, index, kappa and k",
     ),
     (
         "600, 1,4\n950, 1,3\n",
         {"unit": "nm"},
         "has whole numbers alone beside its wavelengths; with decimal commas write semicolons between",
     ),
-    ("freq;n\n600;1,4\n", {}, "has no column of wavelength by its first row, 'freq', 'n'; the"),
+    (
+        "freq;n\n600;1,4\n",
+        {},
+        "has no column of wavelength by its first row, 'freq', 'n'; known are",
+    ),
     (
         "wavelength (nm),n\n600,1,40\n950,1,38\n",
         {},
