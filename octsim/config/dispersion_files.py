@@ -23,7 +23,6 @@ _KAPPA = (
     "extinctioncoefficientk", "kextinctioncoefficient", "extinctioncoefficientkappa",
 )  # fmt: skip
 _COLUMNS = dict.fromkeys(_N, "n") | dict.fromkeys(_KAPPA, "kappa")
-_KNOWN = "known are wavelength, lambda, wl, n, n_real, index, kappa and k"
 _MICROMETRES = (0.01, 99.0)
 """Between these are the wavelengths of refractiveindex.info, whose heading is wl alone, in µm."""
 
@@ -134,9 +133,7 @@ def _heading(file: str, block: Block, *, later: bool) -> _Heading:
     for name in ("wavelength", "kappa" if later else "n"):
         if name not in columns:
             found = ", ".join(f"'{cell}'" for cell in cells)
-            raise ValueError(
-                f"{file} has no column of {name} by its first row, {found}; {_KNOWN}; {FORM}"
-            )
+            raise ValueError(f"{file} has no column of {name} by its first row, {found}; {FORM}")
     if unit:
         _require_length(file, unit)
     return _Heading(columns, unit, len(cells))

@@ -238,7 +238,7 @@ FILES: list[tuple[str, dict[str, str], str]] = [
     (
         "wavelength (nm),x\n600,1.4\n",
         {},
-        "has no column of n by its first row, 'wavelength (nm)', 'x'; known are wavelength, lambda, wl, n, n_real, index, kappa and k",
+        "has no column of n by its first row, 'wavelength (nm)', 'x'; write a first row as",
     ),
     (
         "600, 1,4\n950, 1,3\n",
@@ -248,7 +248,7 @@ FILES: list[tuple[str, dict[str, str], str]] = [
     (
         "freq;n\n600;1,4\n",
         {},
-        "has no column of wavelength by its first row, 'freq', 'n'; known are",
+        "has no column of wavelength by its first row, 'freq', 'n'; write a first row",
     ),
     (
         "wavelength (nm),n\n600,1,40\n950,1,38\n",
