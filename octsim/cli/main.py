@@ -28,7 +28,8 @@ from octsim.cli import (
 )
 
 MODULES = (
-    init, check, run, show, measured, stages, report, archive, compare, reproduce, cache, completion,
+    init, check, run, show, measured, stages, report, archive, compare, reproduce, cache,
+    completion,
 )  # fmt: skip
 """Each adds commands of its own, and imports what does their work when one is asked for."""
 
