@@ -73,7 +73,7 @@ try:
     if workflow.is_main_process and (remark := clock.set_back(Path(f"results/{run.run}"))):
         say(f"octsim: warning: {remark}")
 except OctsimError as error:
-    sys.exit(f"octsim: {error}")
+    sys.exit("\n".join(f"octsim: {line}" for line in str(error).splitlines()))
 if run.run == Config().run and run != Config():
     said.insert(
         0, "run: not given, so this goes to results/thesis in the place of the thesis itself"

@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all, and what is a file at all."""
+"""Files that appear whole or not at all, what is a file at all, and reading in bounds."""
 
 import contextlib
 import errno
@@ -32,12 +32,16 @@ def require_regular(path: str | Path) -> None:
         mode = Path(path).stat().st_mode
     except ValueError:
         raise OSError(errno.EINVAL, "its name holds a byte 0", str(path)) from None
+    _require_file(mode, path)
+    if not os.access(path, os.R_OK):
+        raise PermissionError(errno.EACCES, "permission denied", str(path))
+
+
+def _require_file(mode: int, path: str | Path) -> None:
     if stat.S_ISDIR(mode):
         raise IsADirectoryError(errno.EISDIR, "a folder, and no file", str(path))
     if not stat.S_ISREG(mode):
         raise OSError(errno.EINVAL, "no file, but a pipe or a device", str(path))
-    if not os.access(path, os.R_OK):
-        raise PermissionError(errno.EACCES, "permission denied", str(path))
 
 
 def is_regular(path: str | Path) -> bool:
@@ -114,6 +118,29 @@ def require_empty(folder: Path) -> None:
         raise FileError(
             f"{folder}: not an empty folder; give one that is, or that is not there yet"
         )
+
+
+def read_bounded(path: str | Path, most: int) -> bytes:
+    """Return what a file holds, of at most so many bytes, and never wait for who would write it.
+
+    Raises
+    ------
+    OSError
+        If it can't be read, holds more, or is a folder, a pipe or a device.
+    """
+    try:
+        # a pipe is opened at once, and seen to be one
+        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC)
+    except ValueError:
+        raise OSError(errno.EINVAL, "its name holds a byte 0") from None
+    with os.fdopen(descriptor, "rb") as stream:
+        found = os.fstat(descriptor)
+        _require_file(found.st_mode, path)
+        content = b"" if found.st_size > most else stream.read(most + 1)
+    if max(found.st_size, len(content)) > most:
+        size = max(found.st_size, len(content)) / 1e6
+        raise OSError(errno.EFBIG, f"it holds {size:.3g} MB, of {most / 1e6:.3g} MB at most")
+    return content
 
 
 def digest(stream: IO[bytes]) -> str:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from typing import NoReturn
 
 import octsim
-from octsim.base.errors import OctsimError, OctsimWarning
+from octsim.base.errors import ConfigError, OctsimError, OctsimWarning
 from octsim.base.surroundings import settle
 from octsim.cli import (
     archive,
@@ -78,7 +78,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OctsimError as error:
         for line in str(error).splitlines():
             print(f"octsim: {line}", file=sys.stderr)
-        return int(given.failed)
+        return 2 if isinstance(error, ConfigError) else int(given.failed)
 
 
 def _parsed(parser: Parser, arguments: Sequence[str]) -> Namespace:

@@ -8,6 +8,7 @@ from pydantic import BaseModel
 
 from octsim.base.errors import ConfigError
 from octsim.config.abilities import beyond_scheme
+from octsim.config.bounds import bounded
 from octsim.config.following import fitted_diameters, scan_foci
 from octsim.config.likely import light_remarks
 from octsim.config.models import Config, FocusLine
@@ -139,7 +140,7 @@ def require_possible(config: Config) -> None:
     ConfigError
         If it is; one line for each problem.
     """
-    if problems := list(impossible(config)):
+    if problems := bounded(impossible(config)):
         raise ConfigError(*problems)
 
 

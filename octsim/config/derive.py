@@ -7,13 +7,17 @@ from pydantic import ValidationError
 
 from octsim.base.errors import ConfigError
 from octsim.config.abilities import as_far_as
+from octsim.config.bounds import bounded
 from octsim.config.checks import require_possible
+from octsim.config.fields import Section
 from octsim.config.messages import explain
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.schemes.table import COUNTED_RAYS, FULL_WAVE, LIGHT_PATHS, PRESETS
 
 _PRESET = "tracing.preset"
+_MOST_MADE = 10_000
+"""Sections that are kept for other combinations."""
 _SET_BY_PRESETS = sorted({f"tracing.{key}" for preset in PRESETS.values() for key in preset})
 
 
@@ -106,7 +110,7 @@ def validated(data: Mapping[str, Any]) -> Config:
     try:
         return Config.model_validate(data)
     except ValidationError as error:
-        raise ConfigError(*dict.fromkeys(map(explain, error.errors()))) from None
+        raise ConfigError(*bounded(map(explain, error.errors()))) from None
 
 
 def config_at(base: Mapping[str, Any], values: Mapping[str, Any]) -> Config:
@@ -121,6 +125,58 @@ def config_at(base: Mapping[str, Any], values: Mapping[str, Any]) -> Config:
     for key, value in values.items():
         laid = merge(laid, nested(key, value))
     return Config.model_validate(overlaid(base, laid))
+
+
+class ConfigsAt:
+    """Configs of one config's plain data, with some dotted keys at other values.
+
+    They are those of `config_at`, made of their sections: each is checked once for its own values,
+    as none depends on another.
+
+    Parameters
+    ----------
+    base : mapping
+        A checked config's plain data.
+    """
+
+    def __init__(self, base: Mapping[str, Any]) -> None:
+        self._base = base
+        self._plain = Config.model_validate(base)
+        self._made: dict[tuple[object, ...], tuple[Section, list[Any]]] = {}
+
+    def at(self, values: Mapping[str, Any]) -> Config:
+        """Return the config with some dotted keys at these values.
+
+        Raises
+        ------
+        ValidationError
+            If a value is wrong.
+        """
+        keys_of: dict[str, list[str]] = {}
+        for key in values:
+            keys_of.setdefault(key.partition(".")[0], []).append(key)
+        try:
+            made = {
+                section: self._section(section, keys, values) for section, keys in keys_of.items()
+            }
+        except ValidationError:
+            return config_at(self._base, values)  # says where it is
+        return self._plain.model_copy(update=made)
+
+    def _section(self, name: str, keys: list[str], values: Mapping[str, Any]) -> Section:
+        own = [values[key] for key in keys]
+        # which value it is, as lists and mappings can't be looked up; they are held here meanwhile
+        which = (name, *keys, *map(id, own))
+        found = self._made.get(which)
+        if found is None:
+            laid: dict[str, Any] = {}
+            for key in keys:
+                laid = merge(laid, nested(key, values[key]))
+            model: Any = Config.model_fields[name].annotation
+            found = model.model_validate(overlaid({name: self._base[name]}, laid)[name]), own
+            if len(self._made) < _MOST_MADE:
+                self._made[which] = found
+        return found[0]
 
 
 def changed(config: Config, *overlays: Mapping[str, Any]) -> Config:

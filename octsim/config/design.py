@@ -33,7 +33,10 @@ class DesignBand(Section):
 
 
 _Numbers = Annotated[
-    tuple[PositiveNumber, ...], BeforeValidator(as_tuple), AfterValidator(_different)
+    tuple[PositiveNumber, ...],
+    Field(max_length=1000),
+    BeforeValidator(as_tuple),
+    AfterValidator(_different),
 ]
 
 
@@ -56,7 +59,10 @@ class Design(Section):
     )
     apertures: _Numbers = key([0.8, 1.0], "numerical apertures, beside the objective's")
     bands: Annotated[
-        tuple[DesignBand, ...], BeforeValidator(as_tuple), AfterValidator(_different)
+        tuple[DesignBand, ...],
+        Field(max_length=100),
+        BeforeValidator(as_tuple),
+        AfterValidator(_different),
     ] = key(
         [{"min": "650 nm", "max": "800 nm"}, {"min": "600 nm", "max": "1000 nm"}],
         "wavelengths, beside the spectrum's",

@@ -144,8 +144,22 @@ def explain(error: ErrorDetails) -> str:
 
 def _shown(value: object) -> str:
     """Write what was given; of a long table its start."""
-    text = repr(value) if isinstance(value, str) else as_text(value)
+    text = repr(value) if isinstance(value, str) else as_text(_start(value, [_LONGEST]))
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]} …"
+
+
+def _start(value: Any, left: list[int]) -> Any:
+    """Return as much of lists and mappings as may be shown, as writing all of them takes long."""
+    if not isinstance(value, Mapping | list | tuple):
+        return value
+    parts: list[Any] = []
+    for part in value.items() if isinstance(value, Mapping) else value:
+        if left[0] < 0:
+            break
+        left[0] -= 1
+        key, inner = part if isinstance(value, Mapping) else (None, part)
+        parts.append((key, _start(inner, left)))
+    return dict(parts) if isinstance(value, Mapping) else [inner for _, inner in parts]
 
 
 def unit_of(key: str) -> str:

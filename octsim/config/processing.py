@@ -27,7 +27,10 @@ def _is_made(value: tuple[str | float, ...]) -> tuple[str | float, ...]:
 
 
 ParametricWindow = Annotated[
-    tuple[str | float, ...], BeforeValidator(as_tuple), AfterValidator(_is_made)
+    tuple[str | float, ...],
+    Field(max_length=10),
+    BeforeValidator(as_tuple),
+    AfterValidator(_is_made),
 ]
 
 

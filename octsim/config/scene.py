@@ -139,7 +139,9 @@ class SceneConfig(Section):
         ["glass", "water"],
         "from below, the first ends at z = 0; one between two others as {medium, thickness}",
     )
-    cylinders: Annotated[tuple[CylinderConfig, ...], BeforeValidator(listed)] = _key(
+    cylinders: Annotated[
+        tuple[CylinderConfig, ...], Field(max_length=100), BeforeValidator(listed)
+    ] = _key(
         [{"medium": "neuron"}],
         "{medium, diameter, x, gap, azimuth, elevation, shells} each, all but the first optional",
     )

@@ -3,11 +3,13 @@
 import csv
 import re
 from collections.abc import Callable
-from pathlib import Path
 from typing import NamedTuple
 
-from octsim.base.files import require_regular
+from octsim.base.files import read_bounded, reason
 from octsim.config.units import parse_length
+
+_MOST_BYTES = 8_000_000
+_MOST_LINES = 50_000
 
 _COMMA = re.compile(r"([-+]?[0-9]+),([0-9]+(?:[eE][-+]?[0-9]+)?)")
 _OF_WORDS = re.compile(r"(?<=[^\s,;])\s+(?=[(\[])|(?<=refractive)\s+(?=index)|"
@@ -103,13 +105,15 @@ def read_blocks(file: str, is_heading: Callable[[list[str]], bool]) -> list[Bloc
 def _lines(file: str) -> tuple[list[tuple[int, str]], list[str]]:
     """Return the lines that hold cells with their numbers, and the remarks above all of them."""
     try:
-        require_regular(file)
-        text = Path(file).read_text(encoding="utf-8-sig")
+        text = read_bounded(file, _MOST_BYTES).decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is not text"
-        raise ValueError(f"{file} can't be read ({reason}); give a CSV file") from None
+        why = reason(error) if isinstance(error, OSError) else "it is not text"
+        raise ValueError(f"{file} can't be read ({why}); give a CSV file") from None
+    given = text.splitlines()
+    if len(given) > _MOST_LINES:
+        raise ValueError(f"{file} holds {len(given)} lines; give {_MOST_LINES} at most")
     lines, remarks = list[tuple[int, str]](), list[str]()
-    for number, line in enumerate(map(str.strip, text.splitlines()), 1):
+    for number, line in enumerate(map(str.strip, given), 1):
         if line.startswith("#") and not lines:
             remarks.append(line.lstrip("# "))
         elif line and not line.startswith("#"):

@@ -68,6 +68,7 @@ _PER = re.compile(r"([^\W\d_]+)\s*/\s*([^\W\d_]+?)((?:(?:\^|\*\*)?2|²)?)")
 _NUMBER_PATTERN = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _NUMBER = re.compile(rf"\s*{_NUMBER_PATTERN}\s*")
 _COMMA = re.compile(r"^(\s*[-+]?[0-9]+),([0-9]+)")
+_LONGEST = 500  # characters: what is longer takes long to be found none
 _QUANTITY = re.compile(rf"\s*({_NUMBER_PATTERN})\s*([^\W\d_]\S*|[°%]|\s1?/\S+)\s*")
 
 
@@ -181,6 +182,8 @@ def parse(quantity: Quantity, text: object) -> float:
 
 @lru_cache(maxsize=100_000)  # the combinations of a grid repeat theirs
 def _parsed(quantity: Quantity, text: str) -> float:
+    if len(text) > _LONGEST:
+        raise ValueError(_unreadable(quantity, bare=False))
     match = _QUANTITY.fullmatch(text)
     if match is None:
         pointed = _COMMA.sub(r"\1.\2", text)

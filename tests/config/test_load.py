@@ -143,7 +143,7 @@ def test_every_problem_gets_its_line() -> None:
     [
         ("a: : b", r", line 1, column 4: not as YAML should be: "),
         ("- 1", "holds a list, not keys with values"),
-        ("archive: {date: 2026-13-01}", "holds a date that there is not"),
+        ("archive: {date: 2026-13-01}", "2026-13-01 is no date that there is"),
         ("scene: {gap: 1 nm}\nscene: {gap: 2 nm}", "the key 'scene' stands twice"),
     ],
 )
