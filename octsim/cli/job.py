@@ -17,7 +17,7 @@ from octsim.base.errors import OctsimError, OctsimWarning
 from octsim.base.files import whole
 from octsim.base.say import noting_for, say
 from octsim.cli.job_server import is_alive
-from octsim.config.load import load_config
+from octsim.config.load import load_checked
 from octsim.config.models import Config
 from octsim.datasets.catalog import CATALOG, jobs
 from octsim.datasets.keys import jobs_of
@@ -62,7 +62,7 @@ def do(task: Task) -> int:
     warnings.simplefilter("ignore", OctsimWarning)  # the workflow has said these once
     work = {"figures": _draw, "report": _report, "archive": _archive}.get(task.name, _make)
     try:
-        work(task, folder, load_config(task.config))
+        work(task, folder, load_checked(task.config))
         if task.share == [1, 1]:
             _measure(folder / "benchmarks" / f"{task.name}.tsv", time.monotonic() - begin)
     except OctsimError as error:

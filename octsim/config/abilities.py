@@ -29,7 +29,7 @@ def asked_of_scheme(config: Config) -> Iterator[Asked]:
     """Return what a plain config asks of its scheme, with the keys that do."""
     objective = config.objective
     if objective.pupil not in (None, "uniform"):
-        pupil = config.to_dict()["objective"]["pupil"]
+        pupil = objective.model_dump(mode="json")["pupil"]
         yield Asked(Ability.PUPIL, "objective.pupil", as_text(pupil))
     if objective.apodisation is not None:
         yield Asked(Ability.APLANATIC, "objective.apodisation", objective.apodisation)
@@ -77,25 +77,25 @@ def asked_of_scheme(config: Config) -> Iterator[Asked]:
 
 def _effects(config: Config) -> Iterator[Asked]:
     objective, beam = config.objective, config.beam
-    plain = config.to_dict()
     if objective.zernike.of:
         names = filter(None, map(zernike_name, objective.zernike.of))
-        terms = f"{as_text(plain['objective']['zernike'])} ({', '.join(names)})".replace(" ()", "")
+        given = as_text(objective.model_dump(mode="json")["zernike"])
+        terms = f"{given} ({', '.join(names)})".replace(" ()", "")
         yield Asked(Ability.ZERNIKE, "objective.zernike", terms)
         aberration = Aberration(tuple(objective.zernike.of.items()))
         if not aberration.turned(mirrored_at(config.scene) or 0.0).even[1]:
             yield Asked(Ability.ODD_ALONG, "objective.zernike", terms)
     if objective.focal_shift and objective.focal_shift.moves:
-        shift = as_text(plain["objective"]["focal_shift"])
+        shift = as_text(objective.model_dump(mode="json")["focal_shift"])
         yield Asked(Ability.FOCAL_SHIFT, "objective.focal_shift", shift)
     if config.detector.falloff != _FALLOFF:
         fibre = config.detector.falloff == "fibre"
         ability = Ability.FIBRE_FALLOFF if fibre else Ability.FALLOFF
         yield Asked(ability, "detector.falloff", config.detector.falloff)
     if beam.waist is not None:
-        yield Asked(Ability.WAIST, "beam.waist", plain["beam"]["waist"])
+        yield Asked(Ability.WAIST, "beam.waist", beam.model_dump(mode="json")["waist"])
     if (arm := config.interferometer.reference) and arm.amplitude:
-        reference = as_text(plain["interferometer"]["reference"])
+        reference = as_text(config.interferometer.model_dump(mode="json")["reference"])
         yield Asked(Ability.REFERENCE, "interferometer.reference", reference)
 
 

@@ -2,10 +2,12 @@
 
 from itertools import pairwise
 
+from octsim.base.remembered import remembered
 from octsim.config.scene import CylinderConfig, SceneConfig
 from octsim.schemes.cost import Additions
 
 
+@remembered
 def additions_to(scene: SceneConfig) -> Additions:
     """Return what a scene has beside one cylinder over one plane."""
     if not scene.cylinders:

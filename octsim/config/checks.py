@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pydantic import BaseModel
 
 from octsim.base.errors import ConfigError
+from octsim.base.remembered import remembered
 from octsim.config.abilities import beyond_scheme
 from octsim.config.bounds import bounded
 from octsim.config.following import fitted_diameters, scan_foci
@@ -30,13 +31,25 @@ LARGEST_GAP = 1e7
 _FINEST = 10 * 10.0**-DECIMALS
 
 
-def _ranges(model: BaseModel, prefix: str = "") -> Iterator[tuple[str, Range]]:
+@remembered
+def _ranges(model: BaseModel) -> list[tuple[str, Range]]:
+    """Return the ranges of a section and of those in it, by their keys."""
+    found: list[tuple[str, Range]] = []
     for name in type(model).model_fields:
         value = getattr(model, name)
         if isinstance(value, Range):
-            yield prefix + name, value
+            found.append((name, value))
         elif isinstance(value, BaseModel):
-            yield from _ranges(value, f"{prefix}{name}.")
+            found += [(f"{name}.{key}", span) for key, span in _ranges(value)]
+    return found
+
+
+def _ranges_of(config: Config) -> Iterator[tuple[str, Range]]:
+    for section in type(config).model_fields:
+        value = getattr(config, section)
+        if isinstance(value, BaseModel):
+            for key, span in _ranges(value):
+                yield f"{section}.{key}", span
 
 
 def highest_focus(config: Config) -> tuple[str, float]:
@@ -86,7 +99,7 @@ def impossible(config: Config) -> Iterator[str]:
             "processing.sinusoid.envelope: 'common' given, which is for a series at one diameter; "
             "a sweep needs 'each'"
         )
-    for key, span in _ranges(config):
+    for key, span in _ranges_of(config):
         if not span.start < span.stop:
             given = span.model_dump(mode="json")
             yield (

@@ -1,5 +1,6 @@
 """Configs as plain data: what stands under dotted keys, and configs made from others."""
 
+import functools
 from collections.abc import Mapping
 from typing import Any
 
@@ -127,6 +128,15 @@ def config_at(base: Mapping[str, Any], values: Mapping[str, Any]) -> Config:
     return Config.model_validate(overlaid(base, laid))
 
 
+@functools.lru_cache(maxsize=16)
+def _by_section(keys: tuple[str, ...]) -> Mapping[str, list[str]]:
+    """Return dotted keys by the sections that they are in."""
+    found: dict[str, list[str]] = {}
+    for key in keys:
+        found.setdefault(key.partition(".")[0], []).append(key)
+    return found
+
+
 class ConfigsAt:
     """Configs of one config's plain data, with some dotted keys at other values.
 
@@ -152,9 +162,7 @@ class ConfigsAt:
         ValidationError
             If a value is wrong.
         """
-        keys_of: dict[str, list[str]] = {}
-        for key in values:
-            keys_of.setdefault(key.partition(".")[0], []).append(key)
+        keys_of = _by_section(tuple(values))
         try:
             made = {
                 section: self._section(section, keys, values) for section, keys in keys_of.items()

@@ -1,13 +1,14 @@
 """A config that varies its keys: the axes of the grid, and the config at each combination."""
 
 import itertools
+import json
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from octsim.base.errors import ConfigError
 from octsim.config.checks import plain_remarks
-from octsim.config.derive import bears_on, config_at
+from octsim.config.derive import ConfigsAt, bears_on
 from octsim.config.fields import as_text as as_text
 from octsim.config.models import FIXED as FIXED
 from octsim.config.models import Config
@@ -73,21 +74,26 @@ def axes(config: Config, *keys: str) -> tuple[Axis, ...]:
     if not varied:
         return ()
     # of rows that only differ in what does not count, one is enough
-    rows = {as_text(list(row)): row for row in zip(*varied.values(), strict=True)}
+    rows = {row_text(row): row for row in zip(*varied.values(), strict=True)}
     return (Axis(tuple(varied), tuple(rows.values()), zipped=True),)
+
+
+def row_text(row: tuple[Any, ...]) -> str:
+    """Write the values of a row so that others are written otherwise, a hundred times as fast."""
+    return json.dumps(row, sort_keys=True, default=str)
 
 
 def combinations(config: Config, *keys: str) -> Iterator[Combination]:
     """Return each combination of the grid, as far as it varies some keys; the last axis fastest."""
     along = axes(config, *keys)
-    base = {**config.to_dict(), "grid": {}}
+    configs = ConfigsAt({**config.to_dict(), "grid": {}})
     for position in itertools.product(*(range(len(axis.rows)) for axis in along)):
         values = {
             key: value
             for axis, row in zip(along, position, strict=True)
             for key, value in zip(axis.keys, axis.rows[row], strict=True)
         }
-        yield Combination(position, values, config_at(base, values))
+        yield Combination(position, values, configs.at(values))
 
 
 def remarks(config: Config) -> list[str]:

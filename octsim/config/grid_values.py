@@ -11,8 +11,8 @@ from pydantic import ValidationError
 
 from octsim.base.errors import ConfigError
 from octsim.config.checks import impossible
-from octsim.config.derive import config_at, overlap, part_of
-from octsim.config.grid import as_text, axes, combinations, value_at
+from octsim.config.derive import ConfigsAt, overlap, part_of
+from octsim.config.grid import as_text, axes, combinations, row_text, value_at
 from octsim.config.grid_keys import plain_key, require_varied
 from octsim.config.known_keys import known_keys
 from octsim.config.messages import explain
@@ -24,10 +24,18 @@ MOST = 100_000
 """Combinations of one grid."""
 _RANGES = ({"start", "stop", "num"}, {"start", "stop", "step"})
 _SHOWN = 5  # problems of combinations that are listed
+_COUNTED = 1000  # of more of them, it is said that they are many
 
 
-def expanded(config: Config) -> Config:
+def expanded(config: Config, *, whole: bool = True) -> Config:
     """Check a config's grid as a whole, and write its values out as lists in the config's units.
+
+    Parameters
+    ----------
+    config : Config
+        A config whose sections are checked.
+    whole : bool
+        Whether each combination is looked at, and not the values alone.
 
     Raises
     ------
@@ -45,25 +53,31 @@ def expanded(config: Config) -> Config:
     given = config.model_copy(update={"grid": _grid(config, listed)})
     problems: dict[str, None] = {}
     plain = {key: list(values) for key, values in listed.items()}
-    base = {**given.to_dict(), "grid": {}}
+    configs = ConfigsAt({**given.to_dict(), "grid": {}})
     firsts = {key: values[0] for key, values in listed.items()}
     for key, values in listed.items():
         for position, value in enumerate(values):
             others = {k: v[position] for k, v in listed.items()} if _zipped(config) else firsts
             try:
-                one = config_at(base, {**others, key: value})
+                one = configs.at({**others, key: value})
             except ValidationError as error:
                 for line in map(explain, error.errors()):
                     of_grid = any(overlap(line.split(":")[0], other) for other in listed)
                     problems[f"grid.{line}" if of_grid else line] = None
+                if len(problems) > _COUNTED:
+                    _raise(problems)
             else:
-                plain[key][position] = part_of(one.to_dict(), key)
+                section = key.partition(".")[0]
+                data = {section: getattr(one, section).model_dump(mode="json")}
+                plain[key][position] = part_of(data, key)
     _raise(problems)
     checked = given.model_copy(update={"grid": _grid(config, plain)})
     _check_rows(checked)
-    for combination in combinations(checked):
+    for combination in combinations(checked) if whole else ():
         for line in impossible(combination.config):
             problems[f"grid, at {combination}: {line}"] = None
+        if len(problems) > _COUNTED:
+            break
     _raise(problems)
     return checked
 
@@ -79,7 +93,8 @@ def _grid(config: Config, values: Mapping[str, list[Any]]) -> Grid:
 def _raise(problems: Mapping[str, None]) -> None:
     lines = list(problems)
     if len(lines) > _SHOWN:
-        lines[_SHOWN:] = [f"grid: and {len(lines) - _SHOWN} problems more"]
+        more = "many" if len(lines) > _COUNTED else len(lines) - _SHOWN
+        lines[_SHOWN:] = [f"grid: and {more} problems more"]
     if lines:
         raise ConfigError(*lines)
 
@@ -193,9 +208,10 @@ def _check_rows(config: Config) -> None:
     """Refuse a combination that stands twice."""
     count = max(len(values) for values in config.grid.varied.values())
     for axis in axes(config):
-        texts = [as_text(list(row)) for row in axis.rows]
+        texts = list(map(row_text, axis.rows))
         twice, times = Counter(texts).most_common(1)[0]
         if times > 1:
-            raise ConfigError(f"grid.{axis.keys[0]}: {twice} stands twice; give each value once")
+            row = as_text(list(axis.rows[texts.index(twice)]))
+            raise ConfigError(f"grid.{axis.keys[0]}: {row} stands twice; give each value once")
         if _zipped(config) and len(texts) < count:
             raise ConfigError("grid: a zipped combination stands twice; give each once")

@@ -88,6 +88,18 @@ def load_and_tell(*overlays: str | Path | Mapping[str, Any]) -> tuple[Config, li
         raise ConfigError(bounded(str(error).splitlines())) from None
 
 
+def load_checked(overlay: Mapping[str, Any]) -> Config:
+    """Return the config of a run's job, whose combinations the workflow has looked at before.
+
+    Raises
+    ------
+    ConfigError
+        If a key or a value is wrong.
+    """
+    config = validated(overlaid(Config().to_dict(), plain_data(overlay)))
+    return expanded(config, whole=False) if config.grid.varied else config
+
+
 def _loaded(overlays: Iterable[str | Path | Mapping[str, Any]]) -> tuple[Config, list[str]]:
     given: dict[str, Any] = {}
     asked: dict[str, Any] = {}

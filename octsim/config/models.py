@@ -31,6 +31,7 @@ from octsim.config.resources import Cache as Cache
 from octsim.config.responses import Responses
 from octsim.config.scene import RefractiveIndex as RefractiveIndex
 from octsim.config.scene import SceneConfig as SceneConfig
+from octsim.config.scene import is_dispersive
 from octsim.config.spectrum import Spectrum as Spectrum
 from octsim.config.spectrum import Wavelengths as Wavelengths
 from octsim.optics.materials import Material, group_index
@@ -261,8 +262,7 @@ class Config(Section):
     @property
     def dispersive(self) -> bool:
         """Whether anything in the scene has an index that depends on the wavenumber."""
-        of = self.scene.refractive_index.of
-        return any(of[medium].dispersive for medium in self.scene.media.values())
+        return is_dispersive(self.scene)
 
     def _index_of(self, material: Material) -> float:
         return material.index(self.spectrum.middle).real

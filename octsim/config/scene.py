@@ -1,10 +1,12 @@
 """The config's section on the scene: media, and the layers and cylinders that are made of them."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field, PlainSerializer
 
+from octsim.base.remembered import remembered
 from octsim.config.dispersion import MediumIndex, material_of
 from octsim.config.fields import Position, PositiveLength, Section, listed
 from octsim.config.fields import key as _key
@@ -35,7 +37,7 @@ class RefractiveIndex(Section):
     @property
     def of(self) -> Mapping[str, Material]:
         """Material of each medium by its name."""
-        return {name: material_of(index) for name, index in self}
+        return _materials(self)
 
 
 class AttenuationConfig(Section):
@@ -149,8 +151,7 @@ class SceneConfig(Section):
     @property
     def host(self) -> int:
         """Which layer the cylinders lie in: the last of water, or without one the last of all."""
-        water = [place for place, layer in enumerate(self.layers) if layer.medium == "water"]
-        return max(water) if water and max(water) > 0 else len(self.layers) - 1
+        return _host(self)
 
     @property
     def floor(self) -> float:
@@ -195,15 +196,7 @@ class SceneConfig(Section):
     @property
     def media(self) -> Mapping[str, str]:
         """Names of the media that the scene is made of, by the dotted keys that name them."""
-        return dict(self._media())
-
-    def _media(self) -> Iterator[tuple[str, str]]:
-        for place, layer in enumerate(self.layers):
-            yield f"scene.layers.{place}", layer.medium
-        for place, cylinder in enumerate(self.cylinders):
-            yield f"scene.cylinders.{place}.medium", cylinder.medium
-            for depth, shell in enumerate(cylinder.shells):
-                yield f"scene.cylinders.{place}.shells.{depth}.medium", shell.medium
+        return _media(self)
 
     @property
     def objective_medium(self) -> str:
@@ -236,3 +229,31 @@ class SceneConfig(Section):
     def swept_material(self) -> Material:
         """What is swept is of this."""
         return self.refractive_index.of[self.swept_medium]
+
+
+@remembered
+def _materials(indices: RefractiveIndex) -> Mapping[str, Material]:
+    return MappingProxyType({name: material_of(index) for name, index in indices})
+
+
+@remembered
+def _host(scene: SceneConfig) -> int:
+    water = [place for place, layer in enumerate(scene.layers) if layer.medium == "water"]
+    return max(water) if water and max(water) > 0 else len(scene.layers) - 1
+
+
+@remembered
+def _media(scene: SceneConfig) -> Mapping[str, str]:
+    found = {f"scene.layers.{place}": layer.medium for place, layer in enumerate(scene.layers)}
+    for place, cylinder in enumerate(scene.cylinders):
+        found[f"scene.cylinders.{place}.medium"] = cylinder.medium
+        for depth, shell in enumerate(cylinder.shells):
+            found[f"scene.cylinders.{place}.shells.{depth}.medium"] = shell.medium
+    return MappingProxyType(found)
+
+
+@remembered
+def is_dispersive(scene: SceneConfig) -> bool:
+    """Return whether anything in a scene has an index that depends on the wavenumber."""
+    of = scene.refractive_index.of
+    return any(of[medium].dispersive for medium in scene.media.values())

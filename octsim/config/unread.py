@@ -109,7 +109,9 @@ def unread_scene(config: Config, asked: Mapping[str, Any]) -> list[str]:
     asked : mapping
         Dotted keys that a user asks for, and their values.
     """
-    varied = ("scene", "objective", "beam", *_CHOICES, _PRESET)
+    varied = (
+        "scene.layers", "scene.cylinders", "objective.zernike", "beam.waist", *_CHOICES, _PRESET,
+    )  # fmt: skip
     every = [at.config for at in combinations(config, *varied)]
     used = {medium for one in every for medium in one.scene.media.values()}
     gaps = any(one.gap is None for at in every for one in at.scene.cylinders)

@@ -10,13 +10,14 @@ from typing import NamedTuple
 
 from octsim.base.errors import ConfigError
 from octsim.base.files import standing
+from octsim.config.alike import alike
 from octsim.config.derive import by_light_paths, counting_rays
 from octsim.config.grid import axes, combinations
 from octsim.config.models import Config
 from octsim.config.scheme import point_cost, rate_name, scheme_of
 from octsim.config.tree import paths_by_digits
 from octsim.datasets.catalog import CATALOG
-from octsim.datasets.keys import keys_behind, stages_of
+from octsim.datasets.keys import stage_axes, stages_of
 from octsim.datasets.stage import RAYS, Stage
 from octsim.instrument.point_store import open_store
 from octsim.schemes.cost import PointCost
@@ -26,6 +27,7 @@ _PATH_BYTES = 40  # of what is kept of each path of a point
 _JOB_BYTES = 3e8  # of a process with its libraries, compiled code and blocks
 _SAMPLE_MEMORY = 1000.0  # bytes, of each sample of the spectra in a block
 _ENOUGH = 50  # points, to know what one takes
+_NO_KEY = ("run",)  # which no grid varies
 _SHORT = 60.0  # s; of what takes less nothing needs to be said
 
 
@@ -49,6 +51,13 @@ class Cost(NamedTuple):
             self.disk_bytes + other.disk_bytes,
             max(self.memory_bytes, other.memory_bytes),
         )
+
+    def times(self, count: int) -> "Cost":
+        """Return what as many alike take, one after the other."""
+        return Cost(
+            count * self.points, count * self.cpu_seconds, count * self.disk_bytes,
+            self.memory_bytes,
+        )  # fmt: skip
 
 
 class RunEstimate(NamedTuple):
@@ -113,9 +122,16 @@ def estimate(config: Config, measured: Callable[[str, PointCost], PointCost]) ->
         memory = _JOB_BYTES + _SAMPLE_MEMORY * of.spectrum.samples
         return Cost(0, seconds * values, size * values, memory)
 
+    @functools.cache
+    def kinds(varied: tuple[str, ...]) -> list[tuple[Config, int]]:
+        return list(alike(config, *varied))
+
     def over(row: Stage) -> Cost:
-        every = combinations(config, *keys_behind(row.name, config))
-        return functools.reduce(Cost.and_also, (cost_of(row, at.config) for at in every), Cost())
+        # most stages have the same axes, which are gone through once
+        varied = tuple(key for axis in stage_axes(row.name, config) for key in axis.keys)
+        every = kinds(varied) if varied else kinds(_NO_KEY)
+        costs = (cost_of(row, one).times(count) for one, count in every)
+        return functools.reduce(Cost.and_also, costs, Cost())
 
     there = stages_of(config)
     stages = {

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from octsim.config.grid import combinations
+from octsim.config.alike import alike
 from octsim.config.models import Config
 from octsim.config.scheme import point_cost
 from octsim.datasets.catalog import CATALOG
@@ -58,8 +58,8 @@ def shares_of(config: Config) -> dict[str, int]:
 
 def _shares(stage: str, config: Config) -> int:
     seconds, blocks = 0.0, 0
-    for at in combinations(config, *keys_behind(stage, config)):
-        work = work_of(stage, at.config)
-        seconds += work.points * work.seconds
-        blocks += math.ceil(work.points / work.together)
+    for one, count in alike(config, *keys_behind(stage, config)):
+        work = work_of(stage, one)
+        seconds += count * work.points * work.seconds
+        blocks += count * math.ceil(work.points / work.together)
     return max(1, min(round(seconds / (60 * config.scatter.minutes)), blocks))

@@ -1,0 +1,60 @@
+"""Combinations that cost the same are counted together, and none is lost."""
+
+from typing import Any
+
+import pytest
+
+from octsim.config.alike import alike
+from octsim.config.derive import config_at
+from octsim.config.grid import combinations
+from octsim.config.load import load_checked, load_config
+from octsim.config.scheme import point_cost, rate_name
+
+GRIDS: list[dict[str, Any]] = [
+    {"scene.gap": ["1 nm", "2 nm", "3 nm"], "objective.numerical_aperture": [1.0, 1.1]},
+    {"scene.gap": ["1 nm", "2 nm"], "tracing.rays": [200, 300], "processing.window": ["hann"]},
+    {"combine": "zip", "scene.gap": ["1 nm", "2 nm", "3 nm"], "tracing.rays": [200, 300, 200]},
+    {"combine": "zip", "scene.gap": ["1 nm", "2 nm"], "objective.magnification": [20, 21]},
+    {
+        "scene.cylinders": [
+            [{"medium": "neuron"}],
+            [{"medium": "neuron"}, {"medium": "neuron", "diameter": "1 um", "x": "9 um"}],
+        ],
+        "tracing.preset": ["draft", "standard"], "tracing.max_intersections": [9, 11],
+        "objective.zernike.11": ["0 nm", "1 nm"],
+        "sweep.focus": ["law", {"slope": 0.5, "intercept": "1 nm"}],
+    },
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("grid", GRIDS)
+def test_what_combinations_cost_is_the_same_counted_together(grid: dict[str, Any]) -> None:
+    config = load_config({"grid": grid})
+    for keys in ((), ("scene",), ("tracing", "objective")):
+        each = [at.config for at in combinations(config, *keys)]
+        together = list(alike(config, *keys))
+        assert sum(count for _, count in together) == len(each)
+        expanded = [
+            (rate_name(one), point_cost(one)) for one, count in together for _ in range(count)
+        ]
+        assert sorted(expanded) == sorted((rate_name(one), point_cost(one)) for one in each)
+
+
+def test_combinations_that_differ_in_no_cost_are_one_kind() -> None:
+    assert [count for _, count in alike(load_config({"grid": GRIDS[0]}))] == [6]
+
+
+@pytest.mark.parametrize("grid", GRIDS)
+def test_a_combination_is_the_config_that_checking_all_of_it_gives(grid: dict[str, Any]) -> None:
+    config = load_config({"grid": grid})
+    base = {**config.to_dict(), "grid": {}}
+    for at in combinations(config):
+        whole = config_at(base, at.values)
+        assert at.config == whole
+        assert at.config.to_dict() == whole.to_dict()
+
+
+@pytest.mark.parametrize("grid", GRIDS)
+def test_a_job_reads_the_config_that_its_run_has_checked(grid: dict[str, Any]) -> None:
+    assert load_checked({"grid": grid}) == load_config({"grid": grid})
+    assert load_checked({"scene": {"gap": "6 nm"}}) == load_config({"scene": {"gap": "6 nm"}})
