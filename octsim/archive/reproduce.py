@@ -8,7 +8,7 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,7 @@ from octsim.base.files import require_empty, require_folder, whole
 from octsim.base.say import WORDS
 from octsim.config.load import load_config
 from octsim.config.models import Cache, Measured
+from octsim.config.resources import Budget, Scatter
 from octsim.datasets.files import read, write
 from octsim.studies.calibration.expansion_record import series_in
 
@@ -48,7 +49,9 @@ def chosen(original: Recorded, only: Sequence[str] | None) -> Recorded:
     return original._replace(datasets=kept)
 
 
-def reproduce(original: Recorded, folder: Path, cores: int) -> Recorded:
+def reproduce(
+    original: Recorded, folder: Path, cores: int, budget: Budget | None = None
+) -> Recorded:
     """Make the datasets that are recorded anew in a folder, from their config alone.
 
     Parameters
@@ -59,6 +62,8 @@ def reproduce(original: Recorded, folder: Path, cores: int) -> Recorded:
         Where to; absolute, and empty, not there yet, or one where the same was interrupted.
     cores : int
         For the workflow, 1 or more.
+    budget : Budget, optional
+        What it may take; by default that of a config that says nothing, whatever is recorded.
 
     Raises
     ------
@@ -66,13 +71,13 @@ def reproduce(original: Recorded, folder: Path, cores: int) -> Recorded:
         If the config is refused, something that it needs is not recorded, or the run fails.
     """
     _require_recorded(original)
-    config = _harmless(original)
+    config = _harmless(original, budget or Budget())
     load_config(config)
     expansion = original.datasets.get("expansion")
     series = _series(expansion) if expansion else None
     require_folder(folder)
     file, text = folder / "config.json", json.dumps(config, indent=1) + "\n"
-    if not (file.is_file() and file.read_text(encoding="utf-8") == text):  # else it goes on there
+    if not (file.is_file() and _goes_on(file.read_text(encoding="utf-8"), config)):
         require_empty(folder)
     with whole(file) as partial:
         partial.write_text(text, encoding="utf-8")
@@ -99,9 +104,25 @@ def reproduce(original: Recorded, folder: Path, cores: int) -> Recorded:
     return Recorded(str(folder / results), run.config, made, whole=True)
 
 
-def _harmless(original: Recorded) -> dict[str, Any]:
-    """Return a config that names no file outside the folder."""
-    own = {"cache": Cache().model_dump(mode="json")}
+def _goes_on(text: str, config: Mapping[str, Any]) -> bool:
+    """Return whether what was interrupted was of the same config; the budget may be another."""
+    try:
+        before = json.loads(text)
+    except ValueError:
+        return False
+    return isinstance(before, dict) and {**before, "budget": config["budget"]} == config
+
+
+def _harmless(original: Recorded, budget: Budget) -> dict[str, Any]:
+    """Return a config that names no file outside the folder, and takes what may be taken here."""
+    own = {
+        one: part.model_dump(mode="json")
+        for one, part in (
+            ("cache", Cache()),
+            ("budget", budget),
+            ("scatter", Scatter()),
+        )
+    }
     config: dict[str, Any] = original.config.to_dict() | own
     config["measured"] = Measured().model_dump(mode="json")
     config["expansion"]["series"] = SERIES if "expansion" in original.datasets else None

@@ -4,6 +4,8 @@ import contextlib
 import errno
 import hashlib
 import os
+import re
+import secrets
 import shutil
 import stat
 from collections.abc import Iterator
@@ -64,6 +66,8 @@ def is_folder(path: str | Path) -> bool:
 # snakemake's own notes and the copies that it keeps of files being replaced need some room too
 SPACE = 32_000_000
 _FULL = 1_000_000
+_NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
+_UNFINISHED = re.compile(r"[.].+[.]partial([.].+)?")
 
 
 def standing(path: Path) -> Path:
@@ -157,17 +161,19 @@ def digest_of(path: Path) -> str:
 
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
-    """Return a temporary name beside `path`, that is renamed to it once the file is complete.
+    """Return a temporary file beside `path`, that is renamed to it once the file is complete.
+
+    It is made anew, under a name that nobody can guess: no link that was laid there is followed.
 
     Raises
     ------
     FileError
         If the file can't be written; what stood at `path` before is still there.
     """
-    # always the same name: what a killed process left is overwritten, not left lying about
-    temporary = path.with_name(f".{path.stem}.partial{path.suffix}")
+    temporary = path.with_name(f".{path.stem}.{secrets.token_hex(8)}.partial{path.suffix}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        os.close(os.open(temporary, _NEW, 0o666))
         yield temporary
         temporary.replace(path)
     except (OSError, RuntimeError) as error:
@@ -177,3 +183,11 @@ def whole(path: Path) -> Iterator[Path]:
     finally:
         with contextlib.suppress(OSError):
             temporary.unlink()
+
+
+def remove_unfinished(folder: Path) -> None:
+    """Remove what killed processes have left in a folder, where nobody else is at work."""
+    for file in folder.rglob(".*.partial*"):
+        if _UNFINISHED.fullmatch(file.name) and not file.is_dir():
+            with contextlib.suppress(OSError):
+                file.unlink()

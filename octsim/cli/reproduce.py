@@ -4,11 +4,14 @@ import argparse
 import sys
 import warnings
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from octsim.base.errors import OctsimWarning
 from octsim.cli.compare import add_tolerance
 from octsim.cli.run import cores, require_workflow
+
+if TYPE_CHECKING:
+    from octsim.config.resources import Budget
 
 
 def add(commands: Any) -> None:
@@ -26,8 +29,24 @@ def add(commands: Any) -> None:
     parser.add_argument(
         "--cores", type=cores, default=2, metavar="NUMBER", help="default: %(default)s"
     )
+    parser.add_argument(
+        "--cpu-hours", type=float, metavar="NUMBER",
+        help="of processor time that it may take, whatever budget is recorded (default: 1)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--disk-gigabytes", type=float, metavar="NUMBER", help="that it may write (default: 20)"
+    )
     parser.add_argument("--only", nargs="+", metavar="STAGE", help="some of the datasets")
     parser.set_defaults(do=run_reproduce, failed=2)
+
+
+def _budget(given: argparse.Namespace) -> "Budget":
+    """Return the budget that is asked for: no archive says what may be taken here."""
+    from octsim.config.load import load_config
+
+    asked = {"cpu_hours": given.cpu_hours, "disk_gigabytes": given.disk_gigabytes}
+    said = {name: number for name, number in asked.items() if number is not None}
+    return load_config({"budget": said}).budget
 
 
 def run_reproduce(given: argparse.Namespace) -> int:
@@ -46,7 +65,7 @@ def run_reproduce(given: argparse.Namespace) -> int:
             recorded(given.file.expanduser()) as found,
         ):
             original = chosen(found, given.only)
-            made = reproduce(original, folder, given.cores)
+            made = reproduce(original, folder, given.cores, _budget(given))
             result = compare_recorded(original, made, given.tolerance)
     except KeyboardInterrupt:
         print("octsim: interrupted; the same command goes on from here", file=sys.stderr)

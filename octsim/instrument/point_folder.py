@@ -105,12 +105,18 @@ def write(file: Path, content: bytes) -> None:
     partial = file.with_name(f"{file.name}.{os.urandom(8).hex()}~")
     try:
         try:
-            partial.write_bytes(content)
+            _write_new(partial, content)
         except FileNotFoundError:
             file.parent.mkdir(parents=True, exist_ok=True)
-            partial.write_bytes(content)
+            _write_new(partial, content)
         partial.replace(file)
     except BaseException:
         with suppress(OSError):
             partial.unlink()
         raise
+
+
+def _write_new(file: Path, content: bytes) -> None:
+    """Write a file that is not there yet: no link that was laid there is followed."""
+    with file.open("xb") as stream:
+        stream.write(content)

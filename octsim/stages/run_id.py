@@ -8,6 +8,8 @@ import os
 import uuid
 from pathlib import Path
 
+from octsim.base.files import remove_unfinished
+
 _NAME = "OCTSIM_RUN_ID"  # a job has it from its run
 
 
@@ -18,6 +20,7 @@ def begin(folder: Path) -> None:
     file.parent.mkdir(parents=True, exist_ok=True)
     # in place: a network file system shows a new text to who opens the file, a new file later
     file.write_text(os.environ[_NAME], encoding="utf-8")
+    remove_unfinished(folder)  # of runs that were killed: a folder has one at a time
 
 
 def is_latest(folder: Path) -> bool:
