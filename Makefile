@@ -96,10 +96,11 @@ COMPILE = $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --gene
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate
 RUN = --extra run --extra archive --extra lab
 lock: .venv/bin/python
-	$(PIP) install uv
+	$(PIP) install --require-hashes -r requirements-uv.lock
 	$(COMPILE) pyproject.toml $(RUN) --group build -o requirements.lock
 	$(COMPILE) pyproject.toml $(RUN) --extra stability --group dev -c requirements.lock -o requirements-dev.lock
 	$(COMPILE) pyproject.toml $(RUN) --extra slurm --group build -c requirements.lock -o requirements-slurm.lock
+	$(COMPILE) --group lock -o requirements-uv.lock
 	for name in rays waves cycles; do $(COMPILE) benchmarks/peers/$$name.in -o benchmarks/peers/$$name.lock || exit; done
 
 bench: .venv/run
