@@ -393,7 +393,7 @@ def test_versions_and_libraries_that_differ_are_named(
     found = octsim.compare(folder, tiny)
     digest = octsim.read(tiny / "fourier.nc").attrs["source_digest"]
     assert set(found.versions) == {
-        Change("octsim (fourier)", "9  [2J", octsim.__version__),
+        Change("octsim (fourier)", r"9\n\x1b[2J", octsim.__version__),
         Change("numpy (fourier)", "1.0", np.__version__),
         Change("sources of fourier", "0" * 12, digest),
     }
