@@ -85,7 +85,7 @@ def load_and_tell(*overlays: str | Path | Mapping[str, Any]) -> tuple[Config, li
     try:
         return _loaded(overlays)
     except ConfigError as error:
-        raise ConfigError(bounded(str(error).splitlines())) from None
+        raise ConfigError(*bounded(str(error).splitlines())) from None
 
 
 def load_checked(overlay: Mapping[str, Any]) -> Config:

@@ -70,8 +70,8 @@ def test_the_largest_bad_files_take_less_than_300_megabytes_together(tmp_path: P
     [
         ("none.yaml", "No such file or directory"),
         (".", "Is a directory"),
-        ("pipe", "a pipe or a device, not a file"),
-        ("/dev/zero", "a pipe or a device, not a file"),
+        ("pipe", "no file, but a pipe or a device"),
+        ("/dev/zero", "no file, but a pipe or a device"),
         ("loop", "Too many levels of symbolic links"),
         ("a\0b", "its name holds a byte 0"),
         ("n" * 300, "File name too long"),
@@ -99,7 +99,7 @@ def test_a_table_that_is_no_file_or_very_large_is_not_waited_for(
     Path("long.csv").write_text("wavelength (nm),n\n" + "650,1.5\n" * 60_000, encoding="utf-8")
     Path("large.csv").write_bytes(b"#" * 9_000_000)
     for file, reason in {
-        "pipe": "a pipe or a device, not a file", "large.csv": "it holds 9 MB, of 8 MB at most",
+        "pipe": "no file, but a pipe or a device", "large.csv": "it holds 9 MB, of 8 MB at most",
         "long.csv": "holds 60001 lines; give 50000 at most",
     }.items():  # fmt: skip
         overlay: Any = {"table": file}

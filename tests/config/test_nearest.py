@@ -87,6 +87,5 @@ def test_a_key_that_stands_twice_is_told_at_both_lines(tmp_path: Path) -> None:
     with pytest.raises(ConfigError) as told:
         load_config(tmp_path / "mine.yaml")
     assert str(told.value) == (
-        f"{tmp_path}/mine.yaml, line 5, column 3: not as YAML should be: the key 'gap' stands "
-        "twice, first in line 2; keep one of them"
+        f"{tmp_path}/mine.yaml, line 5, column 3: the key 'gap' stands twice, on line 2 too"
     )
