@@ -24,6 +24,7 @@ LAB = "lab"
 FEWEST = 8
 """Pixels of a band."""
 _MOST = 1_000_000
+_ROUNDING = 1e-9  # µm
 _FILE_FORM = "write a first row as 'wavelength (nm)', and a number for each pixel"
 
 
@@ -131,8 +132,8 @@ PixelsConfig = Annotated[
 
 
 def inside(known: "Array", band: Band) -> "Array":
-    """Return the wavelengths within a band, µm."""
-    return known[(known >= band.min) & (known <= band.max)]
+    """Return the wavelengths within a band, µm, those at its ends with them."""
+    return known[(known >= band.min - _ROUNDING) & (known <= band.max + _ROUNDING)]
 
 
 def within(given: PixelTable | PixelPolynomial, band: Band) -> PixelTable:

@@ -3,10 +3,11 @@
 import math
 from collections.abc import Callable, Mapping
 
-from octsim.config.derive import nested
+from octsim.config.derive import merge, nested
 from octsim.config.following import calibration_diameters
 from octsim.config.light import FibreMode, GaussianFill
 from octsim.config.models import Config
+from octsim.config.pixels import PixelTable
 from octsim.config.scheme import scheme_of
 from octsim.config.units import format_angle, format_length
 from octsim.instrument.build import detector_of
@@ -101,6 +102,23 @@ def _offset_key(config: Config) -> str:
     return f"{config.scene.swept[0]}.x"
 
 
+def _end_of_band(name: str, other: str) -> Parameter:
+    """Return the parameter of one end of the band, whose samples stretch with it."""
+    key = f"spectrum.wavelength.{name}"
+
+    def overlay(config: Config, value: float) -> Overlay:
+        moved = nested(key, format_length(value))
+        band, pixels = config.spectrum.wavelength, config.spectrum.pixels
+        if not isinstance(pixels, PixelTable):
+            return moved
+        held = getattr(band, other)
+        stretch = (value - held) / (getattr(band, name) - held)
+        middles = [format_length(held + stretch * (one - held)) for one in pixels.wavelength]
+        return merge(moved, nested("spectrum.pixels", {"wavelength": middles}))
+
+    return keyed(2e-4, lambda _: key)._replace(overlay=overlay)
+
+
 PARAMETERS: Mapping[str, Parameter] = {
     # of the neuron at rest: its focus goes with it
     "diameter": Parameter(
@@ -125,8 +143,8 @@ PARAMETERS: Mapping[str, Parameter] = {
         0.04, _direction, _directed, counts=_is_polarised, unit="rad"
     ),
     "offset": keyed(0.01, _offset_key, counts=_can(Ability.OFF_AXIS)),
-    "wavelength_min": keyed(2e-4, lambda _: "spectrum.wavelength.min"),
-    "wavelength_max": keyed(2e-4, lambda _: "spectrum.wavelength.max"),
+    "wavelength_min": _end_of_band("min", "max"),
+    "wavelength_max": _end_of_band("max", "min"),
 }  # fmt: skip
 """Each by the name of its tolerance."""
 
