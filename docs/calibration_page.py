@@ -365,15 +365,18 @@ estimator:
 from octsim.studies.calibration.study import calibrating
 
 depth = config.scene.refractive_index.neuron * 1.4  # of the neuron's two sides, µm
-estimate = octsim.phase_of("spectra.csv", calibrating(config), depth, reference="source.csv")
+estimate = octsim.phase_of(
+    "spectra.csv", calibrating(config), depth, reference="source.csv", band=(0.65, 0.9)
+)
 phase = estimate.phase
 octsim.expansion(phase - phase[0], 1.4, calibration)
 ```
 
-`reference` is the source's own spectrum, in the same form and with the dark subtracted; without it
-the source is taken for flat. Heed the warnings: a source that is not flat, or samples that are cut,
-bend phases by far more than their standard error ([phases.md](phases.md)). Raw files of a
-spectrometer go in by [`octsim import`](measured.md), with all that comes before a phase.
+`band` is the calibration's, `spectrum.wavelength` (µm). `reference` is the source's own spectrum,
+in the same form and with the dark subtracted, as the spectra are; without it the source is taken
+for flat. Heed the warnings: a source that is not flat, or samples that are cut, bend phases by far
+more than their standard error ([phases.md](phases.md)). Raw files of a spectrometer go in by
+[`octsim import`](measured.md), with all that comes before a phase.
 
 ## References
 

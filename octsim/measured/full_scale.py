@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.phase.cut_samples import are_cut
+
 SEVERAL = 4
 """Samples of one spectrum on its largest value, from which that is where the camera is full."""
 LEVELS = tuple(2**bits - 1 for bits in (8, 10, 12, 14, 16))
@@ -12,7 +14,8 @@ LEVELS = tuple(2**bits - 1 for bits in (8, 10, 12, 14, 16))
 def full_scale_of(first: NDArray[np.generic], given: float | None) -> float:
     """Return the counts at which a camera is full; infinite where nothing tells.
 
-    As given; else the largest value of a converter that spectra reach and do not pass.
+    As given; else the largest value of a converter that spectra reach and do not pass, or one at
+    which samples of a spectrum pile up.
 
     Parameters
     ----------
@@ -24,8 +27,10 @@ def full_scale_of(first: NDArray[np.generic], given: float | None) -> float:
     if given is not None:
         return given
     largest = first.max()
-    reached = first.dtype.kind in "ui" and int(largest) in LEVELS
-    return float(largest) if reached else np.inf
+    if first.dtype.kind not in "ui":
+        return np.inf
+    full = int(largest) in LEVELS or are_cut(first[(first == largest).sum(axis=1) >= SEVERAL]).any()
+    return float(largest) if full else np.inf
 
 
 def saturated(counts: NDArray[np.generic], full_scale: float) -> NDArray[np.int64]:

@@ -1,5 +1,6 @@
 """What is found out of a recording before its phases are: axis, levels, depth, noise, fit."""
 
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -7,7 +8,7 @@ from numpy.typing import NDArray
 
 from octsim.base.errors import ConfigError
 from octsim.config.derive import calibrating
-from octsim.config.measured import Dispersion
+from octsim.config.measured import Dispersion, Measured
 from octsim.config.models import Config
 from octsim.config.source import source_of
 from octsim.measured.axis import Axis, axis_of, seconds_of, taken, within
@@ -19,6 +20,7 @@ from octsim.measured.noise import Transfer, transfer
 from octsim.measured.recording import Recording
 from octsim.phase.estimators import estimate
 from octsim.phase.estimators.estimate import Estimate
+from octsim.phase.estimators.judged import reference as fitted_depth
 from octsim.phase.estimators.one_fit import (
     Design,
     Model,
@@ -63,6 +65,8 @@ class Setup(NamedTuple):
     """Of each sample's counts, (K,)."""
     fringe: Estimate
     """Of the mean spectrum, (1,)."""
+    measured_depth: float
+    """At which a fringe fits the mean spectrum best, µm; NaN without one."""
     dispersion: tuple[float, float]
     """a2 and a3, rad."""
     chain_error: float
@@ -91,6 +95,7 @@ def setup_of(config: Config, recording: Recording) -> Setup:
         If something is missing or does not fit; in a line that says what to do.
     """
     asked = config.measured
+    _require_other_files(asked)
     k = axis_of(recording, asked.axis)
     time, band = seconds_of(recording, asked.rate), within(k, config.spectrum.wavelength)
     dark = mean_of("measured.dark", asked.dark, k.size, band) if asked.dark else None
@@ -123,13 +128,26 @@ def setup_of(config: Config, recording: Recording) -> Setup:
     if model.turned is not None:
         bare = bare + unturned(design, model.turned, mean)
     alone = resampled(bare[np.newaxis], band.wavenumber, even)
-    fringe = estimate(alone, even, np.array([nominal]), processing, source=on_even)
+    fringe, free = (
+        estimate(alone, even, np.array([nominal]), one, source=on_even)
+        for one in (processing, fitted_depth(processing))
+    )
     order = np.argsort(k)
     return Setup(
         k[order], order, band, time, dark, reference, source, known_from, mean, full, model,
-        design, noise, noise.variance(mean), fringe, dispersion,
+        design, noise, noise.variance(mean), fringe, float(free.depth[0]), dispersion,
         reference_error(model, design, mean, source_error, noise.read_noise**2),
     )  # fmt: skip
+
+
+def _require_other_files(asked: Measured) -> None:
+    """Refuse a dark or a reference that is the file of spectra, whose first spectra it would be."""
+    for key, file in (("dark", asked.dark), ("reference", asked.reference)):
+        if file and asked.spectra and Path(file).resolve() == Path(asked.spectra).resolve():
+            raise ConfigError(
+                f"measured.{key}: {file} given, which is measured.spectra too; give a file of its "
+                "own, as of what was recorded without the sample"
+            )
 
 
 def _first(

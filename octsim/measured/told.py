@@ -9,9 +9,16 @@ from octsim.measured.axis import taken
 from octsim.measured.full_scale import saturated
 from octsim.measured.recording import Recording
 from octsim.measured.setup import FIRST, Setup
+from octsim.phase.estimators.one_fit import left_over_fringe
 
 _DIM = 0.01
 """Of the source's largest power, below which a sample says next to nothing."""
+_LEFT = 0.1
+"""Of the fringe, left by the fit, from which the mean spectrum is said to be another."""
+_SURE = 5.0
+"""Standard errors by which a level is below none."""
+_MOST = 1.05
+"""Visibility above 1 by more than a fit's own error."""
 _FAR = 0.25
 """Of an oscillation over the band, from which a fringe is elsewhere than at its nominal depth."""
 
@@ -49,9 +56,10 @@ def _told(config: Config, recording: Recording, setup: Setup) -> Iterator[str]:
     oscillations = setup.model.depth * np.ptp(band.wavenumber) / np.pi
     yield (
         f"fringe at {setup.model.depth:.5g} um, {oscillations:.3g} oscillations over the band; of "
-        f"the mean spectrum at {float(fringe.depth[0]):.5g} um, visibility "
+        f"the mean spectrum at {setup.measured_depth:.5g} um, visibility "
         f"{float(fringe.visibility[0]):.3g}, {float(fringe.snr[0]):.3g} dB, residual "
-        f"{float(fringe.residual[0]):.3g} counts"
+        f"{float(fringe.residual[0]):.3g} counts, "
+        f"{left_over_fringe(setup.design, setup.mean):.2g} of the fringe"
     )
     if config.measured.dispersion == "fit":
         yield "dispersion: a2 {:+.4g} rad, a3 {:+.4g} rad at the band's edge".format(
@@ -92,10 +100,11 @@ def _doubted(config: Config, setup: Setup) -> Iterator[str]:
             "warning: measured.dark: not given, so the camera's level without light counts as "
             "light; give spectra of a closed shutter"
         )
-    apart = abs(float(setup.fringe.depth[0]) - setup.model.depth)
+    yield from _wrong_levels(setup)
+    apart = abs(setup.measured_depth - setup.model.depth)
     if apart * np.ptp(setup.band.wavenumber) / np.pi > _FAR:
         yield (
-            f"warning: the mean spectrum's fringe is at {float(setup.fringe.depth[0]):.4g} um, not "
+            f"warning: the mean spectrum's fringe is at {setup.measured_depth:.4g} um, not "
             f"at {setup.model.depth:.4g} um; check expansion.diameter, the neuron's index and the "
             "wavelengths"
         )
@@ -105,4 +114,31 @@ def _doubted(config: Config, setup: Setup) -> Iterator[str]:
             "warning: processing.sinusoid.weights: equal, though samples differ in brightness"
             f"{f' and {dim:.0%} hold hardly any light' if dim > _DIM else ''}; give shot, for "
             "phases that are known better"
+        )
+
+
+def _wrong_levels(setup: Setup) -> Iterator[str]:
+    """Say if the mean spectrum is no fringe of the source on light of the source."""
+    known = setup.source_from != "none"
+    if known and (share := left_over_fringe(setup.design, setup.mean)) > _LEFT:
+        yield (
+            f"warning: the fit leaves {share:.0%} of the mean fringe, where octsim's own spectra "
+            "leave a few %: wavelengths may be off or reversed, the dark or the source of other "
+            "spectra, or another surface reflects"
+        )
+    error = np.sqrt(setup.variance / min(FIRST, setup.spectra))
+    if setup.dark is not None:
+        error = error + np.nan_to_num(setup.dark.error)
+    below = setup.mean < -_SURE * error
+    if below.any():
+        at = int(np.argmin(setup.mean))
+        yield (
+            f"warning: measured.dark: above the mean spectrum at {below.sum()} samples, by up to "
+            f"{-setup.mean[at]:.3g} counts at {1e3 * setup.band.wavelength[at]:.6g} nm; it may "
+            "have been subtracted before, or be of another exposure"
+        )
+    if known and setup.source_from == "reference" and float(setup.fringe.visibility[0]) > _MOST:
+        yield (
+            f"warning: visibility {float(setup.fringe.visibility[0]):.3g}, and no light has more "
+            "than 1; look whether the dark is that of these spectra, subtracted once"
         )

@@ -13,6 +13,7 @@ from octsim.base.errors import ConfigError, DatasetError, OctsimWarning
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.config.source import FAINTEST
+from octsim.config.units import format_length
 from octsim.optics.source import MeasuredSource, Source
 from octsim.optics.two_beams import predicted_phase_slope
 from octsim.phase.cut_samples import are_cut
@@ -99,6 +100,7 @@ def phase_of(
     processing: Processing | None = None,
     nominal_depth: float | None = None,
     reference: str | Path | xr.Dataset | Source | None = None,
+    band: tuple[float, float] | None = None,
 ) -> Estimate:
     """Estimate the phases of measured spectra.
 
@@ -115,6 +117,9 @@ def phase_of(
         The source's own spectrum, without the dark: spectra, whose mean is taken, as of `source`,
         or what has a method ``power(wavenumber)``. The fit is shaped by it, and nothing is divided
         by it; without it the source is taken for flat.
+    band : tuple of float, optional
+        Shortest and longest wavelength, µm, of the samples that are used, as those of the
+        calibration; else all are.
 
     Returns
     -------
@@ -159,18 +164,41 @@ def phase_of(
             "'peak' or a length, or pass nominal_depth"
         )
     raw = read_raw(source)
+    if band is not None:
+        raw = _within(raw, *band)
     intensity, k = even(*raw)  # which refuses what is not finite
     require_sensible(raw)
     cut = are_cut(np.asarray(raw.intensity, float))  # before they were interpolated
     nominal = np.full(intensity.shape[0], np.nan if nominal_depth is None else nominal_depth)
     power = None if reference is None else _power(reference, k)
     found = estimate(intensity, k, nominal, processing, cut, power)
+    remedy = attrgetter("measured_remedy" if power is None else "lit_remedy")
     for doubt in (
-        *doubts_of(found.status, "spectra", attrgetter("measured_remedy")),
+        *doubts_of(found.status, "spectra", remedy),
         *_lone(raw, cut),
     ):
         warnings.warn(f"phase_of: {doubt}", OctsimWarning, stacklevel=2)
     return found
+
+
+def _within(raw: Raw, shortest: float, longest: float) -> Raw:
+    """Return the samples of spectra within a band, µm.
+
+    Raises
+    ------
+    ConfigError
+        If the spectra do not reach over it.
+    """
+    wavelength = 2 * np.pi / raw.wavenumber
+    inside = (wavelength >= shortest) & (wavelength <= longest)
+    spacing = np.abs(np.diff(wavelength)).max()
+    if shortest < wavelength.min() - spacing or longest > wavelength.max() + spacing:
+        raise ConfigError(
+            f"band: {format_length(shortest)} to {format_length(longest)} given, but {raw.name} "
+            f"has {format_length(float(wavelength.min()))} to "
+            f"{format_length(float(wavelength.max()))}; give a band within that, in um"
+        )
+    return Raw(raw.wavenumber[inside], np.asarray(raw.intensity)[:, inside], raw.name)
 
 
 def _power(reference: str | Path | xr.Dataset | Source, wavenumber: Array) -> Array:

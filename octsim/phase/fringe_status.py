@@ -54,6 +54,11 @@ class FringeStatus(IntEnum):
         """What a user can do about it who has measured; empty where nothing is amiss."""
         return _MEASURED[self]
 
+    @property
+    def lit_remedy(self) -> str:
+        """What a user can do about it who has measured, and gives the source's own spectrum."""
+        return _LIT[self]
+
 
 _ALONE = (
     "give a smaller gap or detector.core_diameter, or bring the focus between the neuron's sides, "
@@ -105,6 +110,21 @@ _MEASURED: Mapping[FringeStatus, str] = {
     ),
 }
 
+
+_LIT: Mapping[FringeStatus, str] = {
+    **_MEASURED,
+    FringeStatus.POOR_FIT: (
+        "the fringe is no pure sinusoid; octsim's own are none by a few %, and a calibration by "
+        "the same fit has the same shape: snakemake match says whether it is the model's"
+    ),
+    FringeStatus.MIXED: (
+        "subtract fringes of other surfaces, else the phase is not of the diameter alone"
+    ),
+    FringeStatus.OTHER_DEPTHS: "name the depth, or subtract what is there without it",
+    FringeStatus.NO_FRINGE: "name the depth, or take more light or a longer mean",
+    FringeStatus.FAR_FROM_NOMINAL: "check expansion.diameter, the neuron's index and the axis",
+}
+"""What to do about spectra whose source is known, and so needs no division."""
 
 WITH_PHASE = [status for status in FringeStatus if status.has_phase]
 """Those of spectra whose phase can be read."""

@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import octsim
-from octsim.base.errors import DatasetError, OctsimWarning
+from octsim.base.errors import ConfigError, DatasetError, OctsimWarning
 from octsim.optics.source import GaussianSource
 
 WAVENUMBER = np.linspace(2 * np.pi / 0.9, 2 * np.pi / 0.65, 800)
@@ -60,3 +60,16 @@ def test_without_the_source_s_spectrum_it_is_warned_of() -> None:
 def test_a_reference_that_is_no_source_is_refused(given: xr.Dataset, message: str) -> None:
     with pytest.raises(DatasetError, match=f"^reference: .*{message}"):
         octsim.phase_of(lit(), reference=given)
+
+
+def test_the_samples_of_a_band_alone_may_be_used() -> None:
+    turned = lit()
+    # beyond the band something else is seen
+    beyond = 2 * np.pi / WAVENUMBER > 0.85
+    turned["intensity"][:, beyond] = 0.0
+    inner = WAVENUMBER[~beyond]
+    found = octsim.phase_of(turned, reference=SOURCE, band=(0.65, 0.85))
+    expected = PHASES + 2 * 1.95 * ((inner[0] + inner[-1]) / 2 - WAVENUMBER.mean())
+    assert np.abs(np.angle(np.exp(1j * (found.phase - expected)))).max() < 1e-6
+    with pytest.raises(ConfigError, match=r"^band: 0\.6 um to 0\.85 um given, but dataset"):
+        octsim.phase_of(turned, reference=SOURCE, band=(0.6, 0.85))

@@ -214,3 +214,47 @@ def test_a_depth_that_is_fitted_is_refused(tmp_path: Path, lab: Lab) -> None:
     })  # fmt: skip
     with pytest.raises(OctsimError, match=r"processing\.sinusoid\.depth: fitted given"):
         measured(config)
+
+
+def warned(config: Config) -> str:
+    return "\n".join(doubts(measured(config)))
+
+
+def test_levels_and_wavelengths_that_are_others_are_warned_of(tmp_path: Path, lab: Lab) -> None:
+    section = written(tmp_path, lab)
+    right = warned(config_of(section))
+    assert "of the mean fringe" not in right
+    assert "measured.dark: above" not in right
+    assert "visibility" not in right
+    np.savetxt(tmp_path / "axis.csv", NM[::-1], header="wavelength (nm)", comments="")
+    assert "of the mean fringe" in warned(config_of(section))
+    section = written(tmp_path, lab)
+    np.save(tmp_path / "dark.npy", (6 * lab.dark).astype(np.uint16))
+    assert "measured.dark: above the mean spectrum at" in warned(config_of(section))
+
+
+def test_a_camera_that_is_full_below_its_converter_s_largest_value_is_seen(
+    tmp_path: Path, lab: Lab
+) -> None:
+    full = int(1.2 * lab.spectra.max())
+    lit = lab.spectra.copy()
+    lit[3] *= 2
+    cut = lab._replace(spectra=np.minimum(lit, full))
+    found = measured(config_of(written(tmp_path, cut)))
+    assert float(found["full_scale"]) == full
+    assert np.flatnonzero(found["spectrum_status"] == FringeStatus.SATURATED).tolist() == [3]
+    assert not np.isfinite(float(measured(config_of(written(tmp_path, lab)))["full_scale"]))
+
+
+def test_a_dark_that_is_the_file_of_spectra_is_refused(tmp_path: Path, lab: Lab) -> None:
+    section = written(tmp_path, lab)
+    with pytest.raises(OctsimError, match=r"measured\.dark: .* which is measured\.spectra too"):
+        measured(config_of({**section, "dark": section["spectra"]}))
+
+
+def test_the_depth_of_the_mean_spectrum_is_where_its_fringe_is(tmp_path: Path, lab: Lab) -> None:
+    config = load_config({
+        "measured": written(tmp_path, lab),
+        "processing": {"depth": "4.1 um", "sinusoid": {"weights": "shot", "envelope": "common"}},
+    })  # fmt: skip
+    assert float(measured(config)["measured_depth"]) == pytest.approx(4, abs=0.02)

@@ -162,6 +162,15 @@ def residuals(design: Design, net: Array) -> Array:
     return found
 
 
+def left_over_fringe(design: Design, mean: Array) -> float:
+    """Return what the fit leaves of a spectrum (K,) over its fringe, root mean squares."""
+    waves = slice(design.cosine, design.cosine + 2 * design.step)
+    fringe = design.columns[:, waves] @ (design.solver[waves] @ mean)
+    left = residuals(design, mean[np.newaxis])[0]
+    power = float((fringe**2).mean())
+    return float(np.sqrt((left**2).mean() / power)) if power > 0 else np.inf
+
+
 def still_part(design: Design, mean: Array) -> Array:
     """Return what of a spectrum (K,) is of the reflector that does not move; zeros without one."""
     if design.reference is None:

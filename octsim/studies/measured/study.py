@@ -122,12 +122,17 @@ def _parts(config: Config, layout: Layout, setup: Setup) -> Iterator[Part]:
         for first in range(0, setup.spectra, together):
             raw = np.asarray(recording.counts[first : first + together])
             variables = {
-                "counts": (("time", "wavenumber"), np.ascontiguousarray(taken(raw, setup.order))),
+                "counts": (("time", "wavenumber"), native(taken(raw, setup.order))),
                 **_phases(setup, raw),
             }
             if first == 0:
                 variables |= _once(setup)
             yield Part(at, first, len(raw), variables)
+
+
+def native(counts: NDArray[Any]) -> NDArray[Any]:
+    """Return counts in this machine's order of bytes, row by row."""
+    return np.ascontiguousarray(counts, counts.dtype.newbyteorder("="))
 
 
 def _phases(setup: Setup, raw: NDArray[Any]) -> dict[str, Any]:
@@ -170,7 +175,7 @@ def _once(setup: Setup) -> dict[str, Any]:
         "sample_variance": everywhere(setup.variance),
         "full_scale": setup.full_scale,
         "fringe_depth": setup.model.depth,
-        "measured_depth": float(setup.fringe.depth[0]),
+        "measured_depth": setup.measured_depth,
         "dark_noise": float(np.sqrt(setup.noise.read_variance)),
         "variance_per_count": setup.noise.per_count,
         "chain_error": setup.chain_error,
@@ -199,23 +204,8 @@ def doubts(found: xr.Dataset) -> list[str]:
     ]  # fmt: skip
 
 
-_BESIDE_SOURCE = {
-    FringeStatus.POOR_FIT: (
-        "the fringe is no pure sinusoid, nor are octsim's own: a calibration by the same fit has "
-        "the same shape, and snakemake match says whether the spectrum is the model's"
-    ),
-    FringeStatus.MIXED: (
-        "subtract fringes of other surfaces, else the phase is not of the diameter alone"
-    ),
-    FringeStatus.OTHER_DEPTHS: "name the depth, or subtract what is there without it",
-    FringeStatus.NO_FRINGE: "name the depth, or take more light or a longer mean",
-    FringeStatus.FAR_FROM_NOMINAL: "check expansion.diameter, the neuron's index and the axis",
-}
-"""What to do about spectra whose source is known, and so needs no division."""
-
-
 def _remedy_of(found: xr.Dataset) -> Callable[[FringeStatus], str]:
     """Return what says what to do about a status of these spectra."""
     if "measured.reference: not given" in str(found.attrs["understood"]):
         return attrgetter("measured_remedy")
-    return lambda status: _BESIDE_SOURCE.get(status, status.measured_remedy)
+    return attrgetter("lit_remedy")
