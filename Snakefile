@@ -43,7 +43,7 @@ from octsim.config.models import Config
 from octsim.config.told import told
 from octsim.datasets.catalog import CATALOG, TARGETS, jobs
 from octsim.datasets.code import code_of, figures_code
-from octsim.datasets.gallery import drawn_with, run_figures
+from octsim.datasets.gallery import CAPTIONS, drawn_with, run_figures
 from octsim.datasets.keys import inputs_of, jobs_of, keys_read, stages_of
 from octsim.datasets.stage import Stage
 from octsim.stages.cost_estimate import check_budget, expected
@@ -84,9 +84,9 @@ for remark in said:
     say(f"octsim: warning: {remark}")
 
 sys.executable = shlex.quote(PYTHON)  # snakemake writes it into commands of a shell as it is
-os.environ["OCTSIM_RUN"] = str(os.getpid())  # a job ends with the run that started it
+os.environ.update(OCTSIM_RUN=str(os.getpid()))  # a job ends with the run that started it
 if workflow.is_main_process:
-    os.environ["OCTSIM_CORES"] = str(workflow.cores)
+    os.environ.update(OCTSIM_CORES=str(workflow.cores))
 elif not is_latest(Path(f"results/{run.run}")):
     # queued on a cluster by a run that was killed: it must not touch what the next one makes
     sys.exit("octsim: this job's run has ended, and another of its name has begun")
@@ -107,6 +107,10 @@ SPECTRA = [file for file in run.measured.files.values() if is_regular(file)]
 LOCK = FileLock(f"{FOLDER}/.lock")  # held from the start of a run to its end
 # of other targets, what was asked for once: an archive has it too, brought up to date
 BESIDE = [file for file in (f"{FOLDER}/{target}.nc" for target in TARGETS) if Path(file).is_file()]
+
+
+# for `--sdm apptainer` alone: the image that `apptainer build octsim.sif apptainer.def` makes
+container: "octsim.sif"
 
 
 wildcard_constraints:
@@ -156,6 +160,14 @@ def shares(stage: str) -> list[str]:
     """Return the files that a stage is gathered from; none where it is one job."""
     of = SHARES.get(stage, 1)
     return [f"{FOLDER}/shares/{stage}-{n}-of-{of}.npz" for n in range(1, of + 1) if of > 1]
+
+
+def drawn(figure: str, category: str) -> list[str]:
+    """Return the files of a figure, the first marked for snakemake's own report."""
+    file = f"{FOLDER}/figures/{figure}"
+    said = {"figure": figure, "shows": CAPTIONS[figure]}
+    told = "workflow/report/figure.rst"
+    return [report(f"{file}.png", caption=told, category=category, labels=said), f"{file}.svg"]
 
 
 def threads_of(rows: tuple[Stage, ...]) -> int:
@@ -269,11 +281,11 @@ for name, rows in (jobs_of(run) | jobs(beside=True)).items():
             **{row.name: update(f"{FOLDER}/{row.name}.nc") for row in rows},
             figures=update(
                 [
-                    f"{FOLDER}/figures/{figure}.{form}"
+                    file
                     for row in rows
                     if row.beside
                     for figure in drawn_with(row.name)
-                    for form in ("png", "svg")
+                    for file in drawn(figure, row.name)
                 ]
             ),
         log:
@@ -296,7 +308,7 @@ rule figures:
             for name in dict.fromkeys(name for one in FIGURES.values() for name in one.sources)
         },
     output:
-        update([f"{FOLDER}/figures/{name}.{form}" for name in FIGURES for form in ("png", "svg")]),
+        update([file for name in FIGURES for file in drawn(name, "run")]),
     log:
         f"{FOLDER}/logs/figures.log",
     threads: CORES

@@ -18,6 +18,7 @@ from edits import EDITS, EVERYTHING, edit_of
 
 from octsim.config.known_keys import known_keys
 from octsim.config.models import Config
+from octsim.datasets.gallery import CAPTIONS
 
 STAGES = [
     "focus_scan", "focus_sweep", "gaussian_fits", "focus_law", "detections", "spectra", "paths",
@@ -63,6 +64,15 @@ def test_a_second_run_does_nothing(law: Checkout) -> None:
 def test_the_same_config_in_other_units_and_order_reruns_nothing(law: Checkout) -> None:
     other = merged(TINY, {"scene": {"gap": "0.005 um"}, "objective": {"magnification": 20.0}})
     assert law.would_run(dict(reversed(other.items()))) == set()
+
+
+def test_snakemakes_own_report_has_every_figure_with_its_caption(law: Checkout) -> None:
+    law.run(TINY, "--report", "report.html")
+    text = (law.folder / "report.html").read_text(encoding="utf-8")
+    for figure in FIGURES:
+        assert f"{figure}.png" in text
+        assert CAPTIONS[figure] in text
+    (law.folder / "report.html").unlink()
 
 
 # of targets that are no part of a run
