@@ -6,6 +6,7 @@
 # make test-processors                        tests of numbers, as other processors compute them
 # make lint                                   formatting, style, types and what may import what
 # make docs                                   the parts of docs/ that are made
+# make site                                   the docs as a site, in docs/_site/
 # make bench                                  speed, as ratios within one run
 # make bench-sweeps                           what a grid of 1000 combinations takes, minutes
 # make bench-peers                            beside other codes and methods, optional, minutes
@@ -30,7 +31,7 @@ export GIVEN_CONFIG := $(value CONFIG)
 export GIVEN_FILE := $(value FILE)
 export GIVEN_INTO := $(value INTO)
 
-.PHONY: results archive reproduce test test-all test-processors lint format docs bench bench-sweeps \
+.PHONY: results archive reproduce test test-all test-processors lint format docs site bench bench-sweeps \
 	bench-peers kills mutants lock slurm test-slurm bench-slurm clean
 results: .venv/run
 	@exec $(BIN)/octsim run "$$GIVEN_CONFIG" --cores "$(CORES)"
@@ -66,6 +67,10 @@ format: .venv/dev
 docs: results .venv/dev
 	$(BIN)/snakemake stability tradeoff validity diffraction interferometers causes estimators calibration action_potential detector effects scenes responses design --cores $(CORES)
 	$(BIN)/python docs/generate.py
+
+site: .venv/dev
+	rm -rf docs/_site docs/api
+	$(BIN)/sphinx-build -q -W --keep-going docs docs/_site
 
 .venv/bin/python:
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "octsim needs Python 3.11 or later, this is " + sys.version)'

@@ -150,7 +150,8 @@ def vogel_beam(
 def neighbourly_order(x: NDArray[np.float64], y: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return an order of points of the aperture in which neighbours fare alike.
 
-    The scene is symmetric in x and y, and a ray's |x| decides the most: strips of |x|, in them |y|.
+    The scene is symmetric in x and y, and a ray's ``|x|`` decides the most: strips of it, in them
+    ``|y|``.
     The tree is traced faster that way; its result does not depend on the order.
     """
     strips = int(math.sqrt(x.size / 64)) + 1

@@ -94,13 +94,13 @@ def intensity(
 
 
 def intensity_of(values: NDArray[np.complex128]) -> NDArray[np.float64]:
-    """Return the intensity |E|² of a field, of its shape."""
+    """Return the intensity ``|E|²`` of a field, of its shape."""
     squared: NDArray[np.float64] = values.real * values.real + values.imag * values.imag
     return squared
 
 
 def spectrum_of(field: Field) -> tuple[NDArray[np.float64], float]:
-    """Return the intensity of a field, (K,), and the estimate of max |ΔI| / max I."""
+    """Return the intensity of a field, (K,), and the estimate of max ``|ΔI|`` / max I."""
     squared: NDArray[np.float64] = intensity_of(field.values).mean(axis=0)
     return squared, relative_error(math.sqrt(float(squared.max())), field.error)
 

@@ -1,0 +1,33 @@
+"""The docs as a site: `make site`, which asks nothing of the network."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent / "site"))
+
+import octsim
+
+project = "octsim"
+author = "The octsim developers"
+copyright = author  # noqa: A001 (Sphinx's name)
+version = release = octsim.__version__
+extensions = [
+    "myst_parser", "numpydoc", "sphinx.ext.autodoc", "sphinx.ext.autosummary",
+    "mathml", "command_help",
+]  # fmt: skip
+exclude_patterns = ["_site", "site", "api/README.md"]
+nitpick_ignore: list[tuple[str, str]] = []
+# GitHub's own anchors of headings, which the pages link to
+myst_heading_anchors = 3
+html_math_renderer = "mathml"
+html_theme = "pydata_sphinx_theme"
+html_theme_options = {
+    "logo": {"text": f"octsim {octsim.__version__}"},
+    "header_links_before_dropdown": 4,
+    "navigation_with_keys": False,
+    "secondary_sidebar_items": ["page-toc"],
+}
+html_show_sourcelink = False
+# of a class, what it is: a config's keys have a page of their own
+numpydoc_show_class_members = False
+autodoc_typehints = "none"

@@ -1,0 +1,123 @@
+"""Every command in README.md and docs/ is one that is there; none of them is run."""
+
+import re
+import shlex
+from argparse import ArgumentParser
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NoReturn
+
+import pytest
+import yaml
+from snakemake.cli import get_argument_parser  # type: ignore[import-untyped]
+
+from octsim.cli import main as command
+from octsim.config.load import load_config
+from octsim.datasets.catalog import TARGETS
+
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+RULES = {"all", "figures", "archive", *TARGETS}
+FILES = re.compile(r"results/[\w/-]+\.\w+")
+"""A file that a rule makes may be asked for by its name."""
+
+
+def shown(page: Path) -> Iterator[tuple[str, bool]]:
+    """Commands of a page: lines of its blocks of shell, and what text has in backticks, False."""
+    text = page.read_text(encoding="utf-8")
+    for block in re.findall(r"```sh\n(.*?)```", text, flags=re.DOTALL):
+        yield from ((line, True) for line in re.sub(r"\\\n", " ", block).splitlines())
+    text = re.sub(r"```.*?```", "", text, flags=re.DOTALL)
+    yield from ((" ".join(one.split()), False) for one in re.findall(r"`([^`]+)`", text))
+
+
+def called(program: str) -> list[tuple[str, list[str], bool]]:
+    """Return the page and the arguments of each call of a program, and whether it is a block's."""
+    found = []
+    for page in PAGES:
+        for line, block in shown(page):
+            match = re.match(rf"(?:[A-Z_]+=\S+ )*(?:\.venv/bin/)?{program}(?: +|$)(.*)", line)
+            if match:
+                arguments = shlex.split(match[1], comments=True)
+                cut = next((n for n, a in enumerate(arguments) if a in {"|", "&&", ";", ">"}), None)
+                found.append((page.name, arguments[:cut], block))
+    return found
+
+
+def stop(self: ArgumentParser, message: str) -> NoReturn:
+    raise AssertionError(f"{self.prog}: {message}")
+
+
+def test_every_call_of_octsim_is_understood(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Understood(Exception):  # noqa: N818
+        pass
+
+    parsed = command.Parser.parse_args
+
+    def parse(self: command.Parser, arguments: list[str]) -> NoReturn:
+        parsed(self, arguments)
+        raise Understood
+
+    monkeypatch.setattr(command.Parser, "parse_args", parse)
+    monkeypatch.setattr(command.Parser, "error", stop)
+    calls = [one for one in called("octsim") if one[1]]
+    assert len(calls) > 10
+    for page, arguments, block in calls:
+        if block:
+            with pytest.raises(Understood):
+                command.main(arguments)
+        else:  # named, and maybe without what it takes
+            words = [one for one in arguments if not one.startswith("-")]
+            with pytest.raises(SystemExit):
+                command.main([words[0], "--help"])
+            said = capsys.readouterr().out
+            for flag in set(arguments) - set(words):
+                assert flag in said, f"{page}: octsim {words[0]} {flag}"
+
+
+def test_every_call_of_snakemake_is_of_targets_that_are_there(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(ArgumentParser, "error", stop)
+    parser = get_argument_parser()
+    calls = called("snakemake")
+    assert len(calls) > 20
+    for page, arguments, _ in calls:
+        given = parser.parse_args([one for one in arguments if one not in {"<target>", "…"}])
+        for target in given.targets:
+            assert target in RULES or FILES.fullmatch(target), f"{page}: snakemake {target}"
+
+
+def test_every_call_of_make_is_of_a_target_that_is_there() -> None:
+    text = (ROOT / "Makefile").read_text(encoding="utf-8")
+    targets = set(re.findall(r"^([a-z][a-z-]*):", text, flags=re.MULTILINE))
+    variables = set(re.findall(r"^([A-Z_]+) *\??=|\$\(value ([A-Z]+)\)", text, flags=re.MULTILINE))
+    known = {name for pair in variables for name in pair if name} | {"TOLERANCE"}
+    calls = called("make")
+    assert len(calls) > 20
+    for page, arguments, _ in calls:
+        for one in arguments:
+            name, given, _ = one.partition("=")
+            assert name in (known if given else targets), f"{page}: make {one}"
+
+
+@pytest.mark.parametrize("page", ["start.md", "how-to.md"])
+def test_configs_that_are_shown_whole_are_valid(page: str) -> None:
+    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    shown = re.findall(r"```yaml\n(.*?)```", text, flags=re.DOTALL)
+    assert shown
+    for one in shown:
+        assert load_config(yaml.safe_load(one)).run == yaml.safe_load(one)["run"]
+
+
+def test_the_tutorial_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    text = (ROOT / "docs" / "start.md").read_text(encoding="utf-8")
+    scope: dict[str, object] = {}
+    for block in re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL):
+        exec(block, scope)
+    refused, slope, expansion = capsys.readouterr().out.splitlines()
+    assert refused.startswith("scene.gap: 20 given")
+    assert "mrad/nm; predicted 23.1" in slope
+    assert float(expansion.split()[0]) == pytest.approx(11 / 24, rel=0.05)
