@@ -130,9 +130,9 @@ def compare(first: str | Path, second: str | Path, tolerance: float | None = Non
     first, second : path
         A run's folder as ``results/thesis``, or the file of one of its datasets.
     tolerance : float, optional
-        Largest relative difference, max |a − b| / max |b| over a variable, of what is the same. If
-        none is given, `TOLERANCE` where both were made in one environment, else what the condition
-        of each variable allows.
+        Largest relative difference, max ``|a − b|`` / max ``|b|`` over a variable, of what is the
+        same. If none is given, `TOLERANCE` where both were made in one environment, else what the
+        condition of each variable allows.
 
     Returns
     -------
@@ -143,6 +143,18 @@ def compare(first: str | Path, second: str | Path, tolerance: float | None = Non
     ------
     DatasetError
         If one of them can't be read, or they have no dataset in common.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> scan = octsim.focus_scan(octsim.load_config({"tracing": {"rays": 200}}))
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "focus_scan.nc")
+    ...     scan.to_netcdf(file)
+    ...     octsim.compare(file, file).differs
+    False
     """
     with recorded(Path(first)) as one, recorded(Path(second)) as other:
         return compare_recorded(one, other, tolerance)

@@ -53,15 +53,44 @@ class OctsimError(_Said, Exception):
     """Something a user can put right; its text says what, where and how.
 
     Each argument is a line of it: what is no letter of a line is written out, a long one is cut.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> try:
+    ...     octsim.load_config({"scene": {"gapp": "20 nm"}})
+    ... except octsim.OctsimError as error:
+    ...     print(str(error).split(";")[0])
+    scene.gapp: unknown key
     """
 
 
 class ConfigError(OctsimError):
-    """The config cannot be used; a line for each problem."""
+    """The config cannot be used; a line for each problem.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> try:
+    ...     octsim.load_config({"scene": {"gap": 20}})
+    ... except octsim.ConfigError as error:
+    ...     print(str(error).split(";")[0])
+    scene.gap: 20 given
+    """
 
 
 class DatasetError(OctsimError):
-    """A stored dataset is missing, damaged or not what it should be."""
+    """A stored dataset is missing, damaged or not what it should be.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> try:
+    ...     octsim.read("nothing.nc")
+    ... except octsim.DatasetError as error:
+    ...     print(str(error).split(";")[0])
+    nothing.nc: not there
+    """
 
 
 def not_installed(library: str, extra: str) -> OctsimError:
@@ -70,7 +99,18 @@ def not_installed(library: str, extra: str) -> OctsimError:
 
 
 class OctsimWarning(_Said, UserWarning):
-    """Something that a user should know but that stops nothing."""
+    """Something that a user should know but that stops nothing.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> import warnings
+    >>> with warnings.catch_warnings(record=True) as said:
+    ...     warnings.simplefilter("always", octsim.OctsimWarning)
+    ...     config = octsim.load_config({"sweep": {"diameters": {"num": 3}}})
+    >>> print(str(said[0].message).split(":")[0])
+    sweep.diameters
+    """
 
 
 class UncheckedWarning(OctsimWarning):
@@ -78,12 +118,52 @@ class UncheckedWarning(OctsimWarning):
 
 
 class FileError(OctsimError):
-    """A file can't be written, or is none that can be read."""
+    """A file can't be written, or is none that can be read.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> try:
+    ...     octsim.read_spectra("nothing.npy")
+    ... except octsim.FileError as error:
+    ...     print(str(error).split(";")[0])
+    nothing.npy: can't be read (not there)
+    """
 
 
 class CacheError(OctsimError):
-    """A folder is no point cache, or not one that this octsim reads, or can't be cleared."""
+    """A folder is no point cache, or not one that this octsim reads, or can't be cleared.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from octsim.instrument.point_store import clear
+    >>> with TemporaryDirectory() as folder:
+    ...     Path(folder, "notes.txt").touch()
+    ...     try:
+    ...         clear(Path(folder))
+    ...     except octsim.CacheError as error:
+    ...         print(str(error).removeprefix(f"{folder}: ").split(";")[0])
+    is not a point cache of octsim
+    """
 
 
 class ArchiveError(OctsimError):
-    """A run can't be packed, or an archive is not what was packed; a line for each problem."""
+    """A run can't be packed, or an archive is not what was packed; a line for each problem.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "thesis.zip")
+    ...     _ = file.write_bytes(b"cut short")
+    ...     try:
+    ...         octsim.compare(file, file)
+    ...     except octsim.ArchiveError as error:
+    ...         print(str(error).removeprefix(f"{file}: ").split(" (")[0])
+    not a zip that is whole
+    """

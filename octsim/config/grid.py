@@ -84,7 +84,15 @@ def row_text(row: tuple[Any, ...]) -> str:
 
 
 def combinations(config: Config, *keys: str) -> Iterator[Combination]:
-    """Return each combination of the grid, as far as it varies some keys; the last axis fastest."""
+    """Return each combination of the grid, as far as it varies some keys; the last axis fastest.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config({"grid": {"scene.gap": ["5 nm", "20 nm"]}})
+    >>> [one.config.scene.gap for one in octsim.combinations(config)]
+    [0.005, 0.02]
+    """
     along = axes(config, *keys)
     configs = ConfigsAt({**config.to_dict(), "grid": {}})
     for position in itertools.product(*(range(len(axis.rows)) for axis in along)):

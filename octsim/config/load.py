@@ -71,7 +71,8 @@ def load_config(*overlays: str | Path | Mapping[str, Any]) -> Config:
 
     Examples
     --------
-    >>> load_config({"scene": {"gap": "20 nm"}}).scene.gap
+    >>> import octsim
+    >>> octsim.load_config({"scene": {"gap": "20 nm"}}).scene.gap
     0.02
     """
     config, said = load_and_tell(*overlays)

@@ -175,7 +175,15 @@ FIXED = (
 
 
 class Config(Section):
-    """A whole run. Every value has the thesis's as its default."""
+    """A whole run. Every value has the thesis's as its default.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config({"objective": {"numerical_aperture": 0.8}})
+    >>> config.objective.numerical_aperture, config.scene.gap
+    (0.8, 0.005)
+    """
 
     run: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=100)] = _key(
         "thesis", "name of the run: datasets and figures go to results/<run>/"

@@ -138,6 +138,27 @@ def read(
     -----
     UncheckedWarning
         If it has no digest of its bytes, as those of octsim 0.2.0 and before: damage is not seen.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {
+    ...         "tracing": {"rays": 200},
+    ...         "sweep": {
+    ...             "diameters": {"stop": "1.1 um", "num": 3},
+    ...             "focus": {"slope": 0.58, "intercept": "66 nm"},
+    ...         },
+    ...     }
+    ... )
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "detections.nc")
+    ...     octsim.detections(config).to_netcdf(file)
+    ...     detections = octsim.read(file)
+    >>> detections["diameter"].values.tolist()
+    [1.0, 1.05, 1.1]
     """
     with opened(path, stage, config) as dataset, guarded(path):
         return dataset.drop_vars(list(without), errors="ignore").load()

@@ -142,13 +142,13 @@ def phase_of(
 
     Examples
     --------
-    >>> import numpy as np, xarray as xr
+    >>> import numpy as np, octsim, xarray as xr
     >>> k = np.linspace(7, 9.7, 500)
     >>> spectra = xr.Dataset(
     ...     {"intensity": ("wavenumber", 2 + np.cos(2 * 1.9 * (k - k.mean()) + 0.3))},
     ...     {"wavenumber": ("wavenumber", k, {"units": "um-1"})},
     ... )
-    >>> phase_of(spectra).phase.round(6).tolist()
+    >>> octsim.phase_of(spectra).phase.round(6).tolist()
     [0.3]
     """
     processing = BEST if processing is None else processing

@@ -46,7 +46,7 @@ class PhaseChange(NamedTuple):
 
 
 def read_series(path: str | Path) -> Series:
-    """Read time, phase and, where it is given, phase_error from a CSV or netCDF file.
+    r"""Read time, phase and, where it is given, phase_error from a CSV or netCDF file.
 
     A CSV file has one heading, `time,phase` or with units `time (ms),phase (mrad)`; see
     `octsim.phase.measured_headings.parse` for how it may be written. Commas, semicolons or tabs
@@ -59,6 +59,18 @@ def read_series(path: str | Path) -> Series:
     DatasetError
         If the file is missing, can't be read, or does not hold a series; with the row of the file
         or the sample, both counted from 1.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "phases.csv")
+    ...     _ = file.write_text("time (ms),phase (mrad)\n0,1\n1,12\n")
+    ...     series = octsim.read_series(file)
+    >>> series.phase.tolist()
+    [0.001, 0.012]
     """
     return read_as(Path(path), list, lambda _: None)
 

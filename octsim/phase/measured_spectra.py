@@ -52,7 +52,20 @@ class Raw(NamedTuple):
 
 
 def read_spectra(source: str | Path | xr.Dataset) -> Measured:
-    """Read spectra, and bring them to evenly spaced wavenumbers; see `read_raw` and `even`."""
+    """Read spectra, and bring them to evenly spaced wavenumbers; see `read_raw` and `even`.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> import numpy as np, xarray as xr
+    >>> k = np.linspace(7, 9.7, 500)
+    >>> spectra = xr.Dataset(
+    ...     {"intensity": ("wavenumber", 2 + np.cos(2 * 1.9 * k))},
+    ...     {"wavenumber": ("wavenumber", k, {"units": "um-1"})},
+    ... )
+    >>> octsim.read_spectra(spectra).intensity.shape
+    (1, 500)
+    """
     return even(*read_raw(source))
 
 

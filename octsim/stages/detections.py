@@ -53,6 +53,22 @@ def detections(
         differ from wavenumber to wavenumber, or have a polarisation, they are those at the middle
         of the band, and the fields that they make at all samples are kept too: field_real and
         field_imaginary (diameter, field, wavenumber), NaN for those that there are not.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {
+    ...         "tracing": {"rays": 200},
+    ...         "sweep": {
+    ...             "diameters": {"stop": "1.1 um", "num": 3},
+    ...             "focus": {"slope": 0.58, "intercept": "66 nm"},
+    ...         },
+    ...     }
+    ... )
+    >>> detections = octsim.detections(config)
+    >>> detections["diameter"].values.tolist()
+    [1.0, 1.05, 1.1]
     """
     named: Coordinate = "outcome", np.array([outcome.name.lower() for outcome in Outcome])
     schemes = combinations(config, "tracing.scheme", "tracing.preset")

@@ -52,6 +52,22 @@ def fields(
         (diameter, polarisation, node) at node_wavenumber (diameter, node), and its parts, term_real
         and term_imaginary (diameter, term, polarisation, node); how sure it is (diameter). A
         diameter that needs fewer nodes than others has NaN at the last ones.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {
+    ...         "tracing": {"preset": "exact"},
+    ...         "sweep": {
+    ...             "diameters": {"stop": "1.1 um", "num": 3},
+    ...             "focus": {"slope": 0.58, "intercept": "66 nm"},
+    ...         },
+    ...     }
+    ... )
+    >>> fields = octsim.fields(config)
+    >>> fields["diameter"].values.tolist()
+    [1.0, 1.05, 1.1]
     """
     named: dict[str, Coordinate] = {
         "polarisation": ("polarisation", np.array(POLARISATIONS)),

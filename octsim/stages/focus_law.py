@@ -73,6 +73,19 @@ def focus_law(
     -----
     OctsimWarning
         If the line is not fitted to all diameters; it names them.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {
+    ...         "tracing": {"rays": 200},
+    ...         "focus_law": {"diameters": {"num": 3}, "fraction": {"num": 9}},
+    ...     }
+    ... )
+    >>> law = octsim.focus_law(config, octsim.gaussian_fits(config, octsim.focus_sweep(config)))
+    >>> round(float(law["slope"]), 1)
+    0.7
     """
     title = "Focus of greatest intensity as a linear function of the diameter"
     layout = Layout("focus_law", config, title, law_diameters)

@@ -46,6 +46,16 @@ def focus_scan(
     Dataset
         intensity(focus), the mean over the band, its estimated error and whether that is as asked,
         and rays_detected(focus).
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {"tracing": {"rays": 200}, "focus_scan": {"focus": {"num": 5}}}
+    ... )
+    >>> scan = octsim.focus_scan(config)
+    >>> scan["focus"].values.tolist()
+    [-1.0, 0.25, 1.5, 2.75, 4.0]
     """
 
     def own(config: Config) -> dict[str, Coordinate]:

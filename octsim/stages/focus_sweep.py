@@ -41,6 +41,18 @@ def focus_sweep(
     -------
     Dataset
         intensity, its estimated error and whether that is as asked, focus (diameter, fraction).
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {
+    ...         "tracing": {"rays": 200},
+    ...         "focus_law": {"diameters": {"num": 3}, "fraction": {"num": 9}},
+    ...     }
+    ... )
+    >>> dict(octsim.focus_sweep(config).sizes)
+    {'diameter': 3, 'fraction': 9}
     """
     title = "Intensity over the focus, for the diameters of the focus law"
     layout = Layout("focus_sweep", config, title, law_foci, "diameter")

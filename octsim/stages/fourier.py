@@ -46,6 +46,23 @@ def fourier(config: Config, spectra: xr.Dataset) -> Stream:
         magnitude, phase and whether that is known (diameter, component), depth(component);
         visibility and status of the fringe (diameter); and, of another estimator than fft,
         estimated_phase and estimated_depth (diameter), NaN where there is no fringe.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {
+    ...         "tracing": {"rays": 200},
+    ...         "sweep": {
+    ...             "diameters": {"stop": "1.1 um", "num": 3},
+    ...             "focus": {"slope": 0.58, "intercept": "66 nm"},
+    ...         },
+    ...     }
+    ... )
+    >>> spectra = octsim.spectra(config, octsim.detections(config))
+    >>> transformed = octsim.fourier(config, spectra)
+    >>> dict(transformed["phase"].sizes)
+    {'diameter': 3, 'component': 501}
     """
 
     def own(config: Config) -> dict[str, Coordinate]:

@@ -234,6 +234,19 @@ def gaussian_fits(config: Config, sweep: xr.Dataset) -> Stream:
     Dataset
         centre, width, amplitude, offset, their standard errors, residual, that over the range of
         the intensity, status, and the brightest of the foci (diameter).
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {
+    ...         "tracing": {"rays": 200},
+    ...         "focus_law": {"diameters": {"num": 3}, "fraction": {"num": 9}},
+    ...     }
+    ... )
+    >>> fits = octsim.gaussian_fits(config, octsim.focus_sweep(config))
+    >>> fits["centre"].round(1).values.tolist()
+    [0.5, 1.0, 1.7]
     """
     title = "Gaussian plus a constant, fitted to the intensity over the focus"
     layout = Layout("gaussian_fits", config, title, law_diameters)

@@ -40,7 +40,7 @@ def light_paths(
 
     A path's share of the intensity is
 
-    .. math:: \int \mathrm{Re}(E_p^* E)\, dk \Big/ \int |E|^2\, dk, \quad E = \sum_p E_p
+    .. math:: \int \mathrm{Re}(E_p^* E)\, dk / \int |E|^2\, dk, \quad E = \sum_p E_p
 
     over the band: shares sum to one, and that of a path which takes away is negative. Of waves the
     paths are their counterparts: what the plane returns, the terms p = 0 (near side) and p = 2 (far
@@ -60,6 +60,22 @@ def light_paths(
         and path_rays (path, diameter); path_code(path), negative for what is no path of rays. The
         strongest path is first. A path that does not reach the detector at a diameter has no rays
         there, and its phase and optical path are NaN.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {
+    ...         "tracing": {"rays": 200},
+    ...         "sweep": {
+    ...             "diameters": {"stop": "1.1 um", "num": 3},
+    ...             "focus": {"slope": 0.58, "intercept": "66 nm"},
+    ...         },
+    ...     }
+    ... )
+    >>> paths = octsim.light_paths(config, octsim.detections(config))
+    >>> [str(name) for name in paths["path"].values[:3]]
+    ['PT CR PT', 'PT CT CR CT PT', 'PR']
     """
     title = "What each light path has in the spectra"
     unnamed = Layout("paths", config, title, swept_diameters, "diameter")

@@ -48,6 +48,24 @@ def phase_slope(
         component_phase_slope(diameter, component), predicted_phase_slope, and the thesis's summary
         figures as scalars. With spectra by rays, exact_phase_slope(diameter) by Maxwell's equations
         at a few diameters, NaN at the others, and exact_status.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {
+    ...         "tracing": {"rays": 200},
+    ...         "sweep": {
+    ...             "diameters": {"stop": "1.1 um", "num": 3},
+    ...             "focus": {"slope": 0.58, "intercept": "66 nm"},
+    ...         },
+    ...     }
+    ... )
+    >>> spectra = octsim.spectra(config, octsim.detections(config))
+    >>> transformed = octsim.fourier(config, spectra)
+    >>> slopes = octsim.phase_slope(config, transformed)
+    >>> round(float(slopes["predicted_phase_slope"]), 2), slopes["phase_slope"].units
+    (23.14, 'mrad/nm')
     """
 
     def own(config: Config) -> dict[str, Coordinate]:

@@ -22,6 +22,18 @@ def ray_focus_sweep(
     -------
     Dataset
         As that of `focus_sweep`, by scheme paths, for combinations of schemes without rays.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {
+    ...         "tracing": {"preset": "exact"},
+    ...         "focus_law": {"diameters": {"num": 3}, "fraction": {"num": 9}},
+    ...     }
+    ... )
+    >>> dict(octsim.ray_focus_sweep(config).sizes)
+    {'diameter': 3, 'fraction': 9}
     """
     title = "Intensity over the focus by light paths, for the focus law of a scheme without rays"
     layout = Layout("ray_focus_sweep", config, title, law_foci, "diameter")

@@ -46,6 +46,22 @@ def spectra(
     Dataset
         intensity(diameter, wavenumber) and focus(diameter), with the estimated error of the
         intensity and whether that is as asked (diameter).
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {
+    ...         "tracing": {"rays": 200},
+    ...         "sweep": {
+    ...             "diameters": {"stop": "1.1 um", "num": 3},
+    ...             "focus": {"slope": 0.58, "intercept": "66 nm"},
+    ...         },
+    ...     }
+    ... )
+    >>> spectra = octsim.spectra(config, octsim.detections(config))
+    >>> dict(spectra["intensity"].sizes)
+    {'diameter': 3, 'wavenumber': 1000}
     """
 
     def own(config: Config) -> dict[str, Coordinate]:

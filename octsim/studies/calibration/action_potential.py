@@ -75,6 +75,24 @@ def action_potential(
     ------
     OctsimError
         If the diameter is outside the calibration's.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {
+    ...         "action_potential": {"diameter": "1.4 um"},
+    ...         "sweep": {"focus": {"slope": 0.58, "intercept": "66 nm"}},
+    ...         "calibration": {
+    ...             "diameters": {"start": "1.35 um", "stop": "1.45 um", "num": 8},
+    ...             "scheme": "paths",
+    ...         },
+    ...     }
+    ... )
+    >>> calibration = octsim.calibration(config)
+    >>> seen = octsim.action_potential(config, calibration)
+    >>> seen["expansion"].dims
+    ('time',)
     """
     settings, instrument = config.action_potential, Instrument(converged(config), points)
     k = instrument.wavenumber

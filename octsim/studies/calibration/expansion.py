@@ -55,7 +55,22 @@ def expansion(
 
     Examples
     --------
-    A phase that moved by 11 mrad: ``octsim.expansion(0.011, 1.4, calibration)``.
+    A phase that moved by 11 mrad:
+
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {
+    ...         "sweep": {"focus": {"slope": 0.58, "intercept": "66 nm"}},
+    ...         "calibration": {
+    ...             "diameters": {"start": "1.35 um", "stop": "1.45 um", "num": 8},
+    ...             "scheme": "paths",
+    ...         },
+    ...     }
+    ... )
+    >>> calibration = octsim.calibration(config)
+    >>> found = octsim.expansion(0.011, 1.4, calibration)  # 11 mrad
+    >>> print(f"{found.expansion:.2f} nm")
+    0.46 nm
     """
     return solved(phase, sensitivity_at(diameter, calibration), diameter, phase_error)
 
@@ -124,7 +139,7 @@ def series_expansion(
     chain_error: float = 0.0,
     match: xr.Dataset | None = None,
 ) -> xr.Dataset:
-    """Return the expansions of a series of phases.
+    r"""Return the expansions of a series of phases.
 
     Parameters
     ----------
@@ -154,6 +169,30 @@ def series_expansion(
     -----
     OctsimWarning
         Of each thing that the numbers may not be worth: see `doubts`.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {
+    ...         "expansion": {"diameter": "1.4 um", "rest": 4},
+    ...         "sweep": {"focus": {"slope": 0.58, "intercept": "66 nm"}},
+    ...         "calibration": {
+    ...             "diameters": {"start": "1.35 um", "stop": "1.45 um", "num": 8},
+    ...             "scheme": "paths",
+    ...         },
+    ...     }
+    ... )
+    >>> calibration = octsim.calibration(config)
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "phases.csv")
+    ...     rows = "\n".join(f"{n},{p}" for n, p in enumerate([0, 1, -1, 0, 11, 5]))
+    ...     _ = file.write_text("time (ms),phase (mrad)\n" + rows)
+    ...     series = octsim.read_series(file)
+    >>> octsim.series_expansion(config, series, calibration)["expansion"].round(1).values.tolist()
+    [0.0, 0.0, -0.0, 0.0, 0.5, 0.2]
     """
     settings, alone = config.expansion, outliers(series)
     dropped = alone if settings.outliers == "drop" else np.zeros_like(alone)

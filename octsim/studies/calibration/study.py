@@ -83,6 +83,22 @@ def calibration(
     OctsimError
         If the law is needed and could not be fitted, a diameter has no fringe, the scheme that is
         given can't do the scene, or it takes longer than ``budget.cpu_hours``.
+
+    Examples
+    --------
+    >>> import octsim
+    >>> config = octsim.load_config(
+    ...     {
+    ...         "sweep": {"focus": {"slope": 0.58, "intercept": "66 nm"}},
+    ...         "calibration": {
+    ...             "diameters": {"start": "1.35 um", "stop": "1.45 um", "num": 8},
+    ...             "scheme": "paths",
+    ...         },
+    ...     }
+    ... )
+    >>> calibration = octsim.calibration(config)
+    >>> calibration["fixed_focus_phase_slope"].round(1).values.tolist()
+    [24.2, 24.1, 24.1, 24.1, 24.1, 24.1, 24.0, 24.0]
     """
     own, line = converged(config), focus_line(config, law)
     diameters = calibration_diameters(config).values()
