@@ -7,6 +7,11 @@ sys.path.insert(0, str(Path(__file__).parent / "site"))
 
 import octsim
 
+# stages are shown as the functions that they are, with their arguments
+for name in octsim.__dir__():
+    if stage := getattr(getattr(octsim, name), "__wrapped__", None):
+        setattr(octsim, name, stage)
+
 project = "octsim"
 author = "The octsim developers"
 copyright = author  # noqa: A001 (Sphinx's name)
@@ -15,8 +20,7 @@ extensions = [
     "myst_parser", "numpydoc", "sphinx.ext.autodoc", "sphinx.ext.autosummary",
     "mathml", "command_help",
 ]  # fmt: skip
-exclude_patterns = ["_site", "site", "api/README.md"]
-nitpick_ignore: list[tuple[str, str]] = []
+exclude_patterns = ["_site", "site"]
 # GitHub's own anchors of headings, which the pages link to
 myst_heading_anchors = 3
 html_math_renderer = "mathml"

@@ -36,6 +36,7 @@ def test_every_public_name_has_a_page_with_its_example(site: Path) -> None:
     for name in vars(octsim)["__all__"]:
         text = (site / "api" / f"octsim.{name}.html").read_text(encoding="utf-8")
         assert ">Examples<" in text, name
+        assert "object&gt;" not in text, name
 
 
 def test_formulas_are_drawn_without_a_script(site: Path) -> None:
