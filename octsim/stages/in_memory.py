@@ -48,8 +48,9 @@ def run(
 
     Examples
     --------
-    >>> slopes = run({"tracing": {"rays": 100}, "sweep": {"diameters": {"num": 5}}})["phase_slope"]
-    >>> slopes["phase_slope"].sizes["diameter"]
+    >>> import octsim
+    >>> made = octsim.run({"tracing": {"rays": 100}, "sweep": {"diameters": {"num": 5}}})
+    >>> made["phase_slope"]["phase_slope"].sizes["diameter"]
     5
     """
     asked = config_of({} if config is None else config)
