@@ -67,7 +67,7 @@ def full_run(folder: Path) -> Path:
 def _studies(config: Config) -> dict[str, xr.Dataset]:
     """Return both studies with what takes little time."""
     listed = [
-        one if one.effect.name == TRIED or one.configured or not one.measured
+        one if one.effect.name == TRIED or one.effect.focus or one.configured or not one.measured
         else one._replace(status=EffectStatus.NOT_IN_THIS_SCENE)
         for one in variants(config)
     ]  # fmt: skip

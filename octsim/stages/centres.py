@@ -101,10 +101,10 @@ def doubts(law: xr.Dataset) -> list[str]:
 
 def failures(law: xr.Dataset) -> str:
     """Name the diameters of a law without a centre, and why each has none."""
-    return _at(law["centre_use"] != CentreUse.FITTED_THROUGH, law)
+    return _at(law["centre_use"] != CentreUse.FITTED_THROUGH, law, 2)  # of a long line
 
 
-def _at(which: xr.DataArray, dataset: xr.Dataset) -> str:
+def _at(which: xr.DataArray, dataset: xr.Dataset, most: int = _NAMED) -> str:
     """Name the diameters of some fits, what became of each, and where it was brightest."""
     chosen = which.values
     along = {
@@ -115,9 +115,9 @@ def _at(which: xr.DataArray, dataset: xr.Dataset) -> str:
         f"{diameter:.4g} um ({FitStatus(status).name.lower()}"
         + ("" if np.isnan(brightest) else f", brightest at {brightest:.4g} um")
         + ")"
-        for diameter, status, brightest in list(zip(*along.values(), strict=True))[:_NAMED]
+        for diameter, status, brightest in list(zip(*along.values(), strict=True))[:most]
     ]
-    more = [f"and {chosen.sum() - _NAMED} more"] if chosen.sum() > _NAMED else []
+    more = [f"and {chosen.sum() - most} more"] if chosen.sum() > most else []
     return f"{chosen.sum()} of {chosen.size} diameters: {', '.join([*named, *more])}"
 
 
@@ -145,8 +145,8 @@ def remedy(config: Config, law: xr.Dataset) -> str:
     middle, reach = (tried.start + tried.stop) / 2, tried.stop - tried.start
     if np.isnan(brightest).all():
         return (
-            "the intensity is the same at all foci, so no focus is better than another; bring "
-            "focus_law.fraction to the neuron (0 to 1), change detector.core_diameter"
+            "the intensity is the same at all foci; bring focus_law.fraction to the neuron (0 to "
+            "1), change detector.core_diameter"
         )
     by = max(_FARTHER, _WIDER * reach)
     start = tried.start - by * bool((brightest < middle).any())

@@ -161,8 +161,8 @@ def sweep_foci(config: Config, law: xr.Dataset | None) -> NDArray[np.float64]:
         raise OctsimError(f"sweep.focus: 'law' given, so fit and pass the focus law, {given}")
     if not np.isfinite(law["slope"]):
         raise OctsimError(
-            "sweep.focus: 'law' given, but there is no law, which needs centres at "
-            f"{FEWEST} diameters: none at {failures(law)}; {remedy(config, law)}, {given}"
+            "sweep.focus: 'law' given, but there is no law: no centre at "
+            f"{failures(law)}; {remedy(config, law)}, or give a line"
         )
     foci = FocusLine.fitted(law).at(diameters)
     if not foci.max() < config.objective.focus_distance:
