@@ -68,7 +68,7 @@ def described(row: "Stage", dataset: "xr.Dataset") -> Iterator[str]:
     for name, variable in dataset.data_vars.items():
         if "flag_meanings" in variable.attrs:
             yield f"{name}: {in_words(variable)}"
-    for doubt in named(row.doubts)(dataset) if row.doubts else ():
+    for doubt in row.doubts_of(dataset):
         yield f"warning: {doubt}"
 
 

@@ -58,6 +58,6 @@ def run_stage(dataset: str, given: Namespace) -> int:
     write(found, given.output)
     print(f"{given.output}: {named(row.summary)(found)}")
     sys.stdout.flush()  # before the warnings, where both go to one screen
-    for doubt in named(row.doubts)(found):
+    for doubt in row.doubts_of(found):
         print(f"octsim: warning: {doubt}", file=sys.stderr)
     return 0

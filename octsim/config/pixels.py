@@ -1,12 +1,13 @@
 """The part of the config on a spectrometer's pixels: which wavelength each of them sees."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Protocol
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from octsim.config.dispersion_forms import Ascending
 from octsim.config.fields import Number, Section, absent, listed
+from octsim.config.source import Band
 from octsim.config.table_text import WAVELENGTH, is_number, read_blocks, unit_in, unit_of
 from octsim.config.units import format_length, parse_length
 
@@ -26,18 +27,6 @@ FEWEST = 8
 _MOST = 1_000_000
 _ROUNDING = 1e-9  # µm
 _FILE_FORM = "write a first row as 'wavelength (nm)', and a number for each pixel"
-
-
-class Band(Protocol):
-    """Wavelengths, µm."""
-
-    @property
-    def min(self) -> float:
-        """The shortest."""
-
-    @property
-    def max(self) -> float:
-        """The longest."""
 
 
 class PixelTable(Section):

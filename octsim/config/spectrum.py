@@ -1,7 +1,7 @@
 """The part of the config on the spectrum: its band, its samples and its source."""
 
 from math import pi
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
@@ -14,6 +14,15 @@ from octsim.optics.band import wavenumbers
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+
+class Recorded(NamedTuple):
+    """What a spectrometer records."""
+
+    intensity: "NDArray[np.float64]"
+    """(K,)."""
+    brightest: float
+    """The source's largest power there; 1 of a flat one."""
 
 
 class Wavelengths(Section):
@@ -81,22 +90,25 @@ class Spectrum(Section):
 
     def recorded(
         self, intensity: "NDArray[np.float64]", wavenumber: "NDArray[np.float64]"
-    ) -> "NDArray[np.float64]":
+    ) -> Recorded:
         """Return what a spectrometer records of intensities (K,) of a flat source.
 
         Times the source's power, and as a mean over each pixel, at wavenumbers (K,), 1/µm.
         """
         source = source_of(self.source)
-        lit = intensity if source is None else intensity * source.power(wavenumber)
+        lit, brightest = intensity, 1.0
+        if source is not None:
+            power = source.power(wavenumber)
+            lit, brightest = intensity * power, float(power.max())
         if self.pixels is None:
-            return lit
+            return Recorded(lit, brightest)
         import numpy as np  # here, as reading a config takes half as long without
 
         from octsim.optics.pixels import pixel_means
 
         middle = 2 * np.pi / self._middles[::-1]
         width = np.interp(wavenumber, middle, np.gradient(middle))
-        return pixel_means(lit, wavenumber, width)
+        return Recorded(pixel_means(lit, wavenumber, width), brightest)
 
     def power(self) -> "NDArray[np.float64] | None":
         """Return the source's power at the wavenumbers, over its largest, (K,); None of a flat one.

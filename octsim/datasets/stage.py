@@ -2,9 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
+from octsim.base.named import named
 from octsim.config.models import Config
 from octsim.schemes.table import COUNTED_RAYS
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 LIGHT = "(light)"
 """Stands for the keys that the light of a point depends on, which are the scheme's to say."""
@@ -100,3 +105,7 @@ class Stage:
     def module(self) -> str:
         """Module that makes it."""
         return self.make.partition(":")[0]
+
+    def doubts_of(self, dataset: "xr.Dataset") -> list[str]:
+        """Return, a line each, where its dataset is not what one would want."""
+        return list(named(self.doubts)(dataset)) if self.doubts else []

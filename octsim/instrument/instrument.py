@@ -12,7 +12,6 @@ from octsim.base.provenance import source_digest
 from octsim.base.threads import each
 from octsim.config.models import Config
 from octsim.config.scheme import options_of, rate_name, scheme_of, traced_keys
-from octsim.config.source import source_of
 from octsim.instrument.build import optics_of, scene_of
 from octsim.instrument.point_keys import instrument_key
 from octsim.instrument.points import Points
@@ -106,9 +105,7 @@ class Instrument:
         spectrum = self.config.spectrum
         if spectrum.plain:
             return found
-        source = source_of(spectrum.source)
-        brightest = 1.0 if source is None else float(source.power(wavenumber).max())
-        return _recorded(found, spectrum.recorded(found.intensity, wavenumber), brightest)
+        return _recorded(found, *spectrum.recorded(found.intensity, wavenumber))
 
     def spectrum(self, diameter: float, focus: float) -> PointSpectrum:
         """Return the spectrum of a diameter at a focus, both µm."""

@@ -8,7 +8,6 @@ import yaml
 from octsim.archive.compare_origins import config_changes
 from octsim.archive.contents import title_of
 from octsim.archive.origin import origin_of
-from octsim.base.named import named
 from octsim.config.archive import ArchiveConfig
 from octsim.config.grid import remarks
 from octsim.config.models import Config
@@ -42,8 +41,7 @@ def _said(shown: Shown) -> Iterator[str]:
     """Return what a user should know of a run, a line each, as its jobs said it."""
     yield from remarks(shown.config)
     for name, dataset in shown.datasets.items():
-        row = CATALOG[name]
-        yield from named(row.doubts)(dataset) if row.doubts else ()
+        yield from CATALOG[name].doubts_of(dataset)
 
 
 def _warnings(shown: Shown) -> Html:

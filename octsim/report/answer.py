@@ -8,7 +8,7 @@ import xarray as xr
 from octsim.config.scheme import scheme_of
 from octsim.report.markup import Html, element, joined
 from octsim.report.shown import Shown
-from octsim.report.words import command, signed, with_error
+from octsim.report.words import capital, command, signed, with_error
 from octsim.stages import phase_slope
 from octsim.studies.calibration import told
 
@@ -55,7 +55,7 @@ def _of_calibration(table: xr.Dataset) -> Html:
     slope = float(one["fixed_focus_phase_slope"])
     error = float(one["fixed_focus_phase_slope_standard_error"])
     if not (np.isfinite(slope) and slope):
-        return _nothing(f"{_capital(told.summary(table))}.")
+        return _nothing(f"{capital(told.summary(table))}.")
     what = (
         f"phase slope ± its standard error, at the diameter d = {float(one['diameter']):.4g} µm "
         "with the focus held: by calibration.nc"
@@ -64,7 +64,7 @@ def _of_calibration(table: xr.Dataset) -> Html:
         with_error(slope, error),
         what,
         f"So 1 mrad of phase is {signed(1000 / slope, 2)} pm of the diameter there.",
-        f"{_capital(told.summary(table))}.",
+        f"{capital(told.summary(table))}.",
     )  # fmt: skip
 
 
@@ -72,7 +72,7 @@ def _of_sweep(slopes: xr.Dataset) -> Html:
     """Show the mean slope over the diameters, with its scatter."""
     known = np.isfinite(slopes["phase_slope"].values)
     if not known.any():
-        return _nothing(f"{_capital(phase_slope.summary(slopes))}.")
+        return _nothing(f"{capital(phase_slope.summary(slopes))}.")
     diameter = slopes["diameter"].values[known]
     number = with_error(
         float(slopes["mean_phase_slope"]), float(slopes["phase_slope_standard_deviation"])
@@ -118,7 +118,3 @@ def _facts(shown: Shown) -> Iterator[tuple[str, str]]:
     yield "Band", "{:.0f} to {:.0f} nm".format(*wavelengths)
     yield "Objective", f"NA {config.objective.numerical_aperture:g}"
     yield "Estimator", config.processing.estimator.replace("_", " ")
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]

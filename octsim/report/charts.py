@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from octsim.report.markup import Html, element, joined
-from octsim.report.words import command
+from octsim.report.words import capital, command
 
 
 def charts(values: Mapping[str, Any]) -> Html:
@@ -110,7 +110,7 @@ def _traces(values: Mapping[str, Any]) -> Html:
         return Html()
     drawn = [
         _chart(
-            f"trace-{number}", f"{one['name'][:1].upper()}{one['name'][1:]} ({one['unit']})",
+            f"trace-{number}", f"{capital(one['name'])} ({one['unit']})",
             *([] if one["every"] else [element(
                 "p", f"What is seen of {one['of']} samples; expansion.nc has all.", class_="note"
             )]),

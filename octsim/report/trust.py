@@ -12,7 +12,7 @@ from octsim.datasets.catalog import CATALOG
 from octsim.phase.fringe_status import WITH_PHASE, FringeStatus
 from octsim.report.markup import Html, details, element, joined, table
 from octsim.report.shown import Shown
-from octsim.report.words import command, share, signed, with_error
+from octsim.report.words import capital, command, share, signed, with_error
 from octsim.schemes.light import AccuracyStatus
 from octsim.stages.beside_maxwell import beside
 from octsim.studies.effects.variants import EffectStatus
@@ -68,14 +68,12 @@ def _rows(shown: Shown) -> Iterator[Row]:
             yield _measured(name, about, shown.datasets[name])
             continue
         alone = " (in a config without a grid)" if shown.combination else ""
-        how = joined(
-            f"{what[:1].upper()}{what[1:]}{alone}: made by ", element("code", command(name))
-        )
+        how = joined(f"{capital(what)}{alone}: made by ", element("code", command(name)))
         yield Row(about, UNKNOWN, element("p", how))
 
 
 def _sentence(text: str) -> Html:
-    return element("p", f"{text[:1].upper()}{text[1:]}.")
+    return element("p", f"{capital(text)}.")
 
 
 def _accuracy(shown: Shown) -> Row:
@@ -101,7 +99,7 @@ def _accuracy(shown: Shown) -> Row:
             f"accuracy {config.tracing.accuracy:g} asked for, reached by {reached} of "
             f"{status.size} spectra"
         )
-    doubts = named(CATALOG["spectra"].doubts)(spectra)
+    doubts = CATALOG["spectra"].doubts_of(spectra)
     fine = not doubts and not scheme.counts_rays
     said = joined(_sentence(f"{asked}; {estimate}"), _list(doubts))
     return Row(about, FINE if fine else LOOK, said)
@@ -118,7 +116,7 @@ def _fringes(shown: Shown) -> Row:
         return Row(about, UNKNOWN, element("p", "No dataset of this run has a fringe_status."))
     status = found["fringe_status"].values
     seen = int(np.isin(status, WITH_PHASE).sum())
-    doubts = named(CATALOG["fourier"].doubts)(found)
+    doubts = CATALOG["fourier"].doubts_of(found)
     fine = bool((status == FringeStatus.VISIBLE).all())
     said = _sentence(f"a phase is read from {seen} of {status.size} spectra")
     return Row(about, FINE if fine else LOOK, joined(said, _list(doubts)))
@@ -127,7 +125,7 @@ def _fringes(shown: Shown) -> Row:
 def _measured(name: str, about: str, found: xr.Dataset) -> Row:
     """Say what a dataset beside the run comes to, and where it is to be doubted."""
     row = CATALOG[name]
-    doubts = named(row.doubts)(found) if row.doubts else []
+    doubts = row.doubts_of(found)
     needed = name == "effects" and bool(found["needed"].any())
     said = _sentence(named(row.summary)(found))
     off = name == "validity" or needed or doubts

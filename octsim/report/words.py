@@ -34,3 +34,8 @@ def share(value: float) -> str:
 def command(target: str) -> str:
     """Return the command that makes what is not there, of the config that the page offers."""
     return " ".join(filter(None, ("snakemake", target, "--cores 2 --configfile config.yaml")))
+
+
+def capital(text: str) -> str:
+    """Write a sentence's first letter as one."""
+    return text[:1].upper() + text[1:]

@@ -130,7 +130,7 @@ def _tell(row: Stage, file: Path, config: Config) -> None:
     if not (row.summary or row.doubts):
         return
     with opened(file, row.name, config) as dataset:
-        for doubt in named(row.doubts)(dataset) if row.doubts else ():
+        for doubt in row.doubts_of(dataset):
             logging.warning("octsim: warning: %s", doubt)
         if row.summary:
             logging.info("octsim: %s", named(row.summary)(dataset))

@@ -86,7 +86,7 @@ class Bench:
         limits = [self._spectrum(one, diameter, focus) for one in self._limits]
         exact, _, status = self._spectrum(self._exact, diameter, focus)
         own, swapped = (
-            np.stack([self._config.spectrum.recorded(one, self._wavenumber) for one in each])
+            np.stack([self._config.spectrum.recorded(one, self._wavenumber)[0] for one in each])
             for each in ([one.intensity for one in found], [one.swapped for one in found])
         )
         spectra = np.stack([*own, *(one.intensity for one in limits)])
