@@ -185,6 +185,13 @@ class Config(Section):
     (0.8, 0.005)
     """
 
+    # an editor that reads the schema shows what the config is, not how Python reads it
+    model_config = ConfigDict(
+        json_schema_extra=lambda schema: schema.update(
+            description=str(schema["description"]).partition("\n")[0]
+        )
+    )
+
     run: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$", max_length=100)] = _key(
         "thesis", "name of the run: datasets and figures go to results/<run>/"
     )

@@ -37,19 +37,21 @@ def test_who_is_cited_is_what_a_config_says(folder: Path, tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize(
-    ("arguments", "line"),
+    ("arguments", "status", "line"),
     [
-        (["none"], "octsim: none: no datasets; give a folder as results/thesis"),
+        (["none"], 1, "octsim: none: no datasets; give a folder as results/thesis"),
         (
             ["{folder}", "--combination", "2"],
+            1,
             "octsim: --combination: 2 given, but the run has no grid; give 1 to 1",
         ),
-        (["{folder}", "--config", "none.yaml"], "octsim: none.yaml: "),
-        (["{folder}", "-o", "{folder}"], "octsim: {folder}: can't be written ("),
+        (["{folder}", "--config", "none.yaml"], 2, "octsim: none.yaml: "),
+        (["{folder}", "-o", "{folder}"], 1, "octsim: {folder}: can't be written ("),
     ],
 )
 def test_what_is_wrong_is_one_line(
     arguments: list[str],
+    status: int,
     line: str,
     folder: Path,
     tmp_path: Path,
@@ -57,7 +59,7 @@ def test_what_is_wrong_is_one_line(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert main(["report", *(one.format(folder=folder) for one in arguments)]) == 1
+    assert main(["report", *(one.format(folder=folder) for one in arguments)]) == status
     said = capsys.readouterr()
     assert said.out == ""
     assert len(said.err.splitlines()) == 1

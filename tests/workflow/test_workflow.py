@@ -132,6 +132,9 @@ OTHERS: dict[str, Any] = {
     },
 }
 
+# and of those, what goes with spectra only
+SPECTRA: dict[str, Any] = {"measured": {"spectra": "counts.csv"}, "expansion": {"slope": "match"}}
+
 
 def keys_in(part: Any, prefix: str = "") -> set[str]:
     """Give the dotted keys of an overlay, ranges as one."""
@@ -152,14 +155,15 @@ def test_every_key_is_edited_below() -> None:
             leaves.add(key)
     ends = {f"{key}.{end}" for key in leaves for end in ("start", "stop", "num")}
     optional = {
-        "expansion.series", "archive.title", "archive.description", "archive.date",
+        "expansion.series", "measured.spectra", "archive.title", "archive.description", "archive.date",
         "calibration.scheme", "calibration.tolerances.scene.cylinders.0.azimuth",
     }  # fmt: skip
-    assert leaves - ends == set(EDITS) | keys_in(OTHERS) - optional
+    assert leaves - ends == set(EDITS) | (keys_in(OTHERS) | keys_in(SPECTRA)) - optional
 
 
 def test_keys_of_other_targets_rerun_nothing_of_a_run(law: Checkout, given: Checkout) -> None:
     assert law.would_run(merged(TINY, OTHERS)) == set()
+    assert law.would_run(merged(TINY, SPECTRA)) == set()
     assert given.would_run(merged(TINY, GIVEN, OTHERS)) == set()
 
 
