@@ -5,9 +5,12 @@ import sys
 from argparse import Namespace
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from octsim.base.errors import ConfigError
+
+if TYPE_CHECKING:
+    from octsim.config.models import Config
 
 _FIELDS = ("at", "x", "dark", "reference", "rate", "full_scale")
 """Options that are keys of the section measured."""
@@ -36,6 +39,9 @@ def add(commands: "argparse._SubParsersAction[Any]") -> None:
     parser.add_argument("--reference", help="file with the source's own spectra, raw")
     parser.add_argument("--rate", help="of spectra, as '20 kHz'")
     parser.add_argument("--full-scale", type=float, help="counts at which the camera is full")
+    parser.add_argument(
+        "--source", type=Path, help="also write the reference as a file for spectrum.source"
+    )
     parser.set_defaults(do=do, failed=2)
 
 
@@ -44,6 +50,7 @@ def do(given: Namespace) -> int:
     from octsim.config.load import load_and_tell
     from octsim.datasets.files import opened
     from octsim.datasets.writer import write_stream
+    from octsim.studies.measured.source_file import write_source
     from octsim.studies.measured.study import doubts, measured, own_band, summary
 
     asked: dict[str, Any] = {
@@ -63,12 +70,11 @@ def do(given: Namespace) -> int:
     for remark in said if given.config else ():
         print(f"octsim: warning: {remark}", file=sys.stderr)
     output = Path(given.output)
-    named = {"--config": given.config, **config.measured.files}
-    for key, file in named.items():
-        if file is not None and output.exists() and Path(file).exists() and output.samefile(file):
-            raise ConfigError(
-                f"--output: {output} given, which is {key}'s own file; give another name"
-            )
+    _require_new("--output", output, given.config, config)
+    if given.source is not None:
+        _require_new("--source", given.source, given.config, config)
+        write_source(config, given.source)
+        print(f"{given.source}: the source, for spectrum.source")
     write_stream(measured.stream(config), output)
     with opened(output, "measured", config) as found:
         for line in str(found.attrs["understood"]).splitlines():
@@ -78,3 +84,12 @@ def do(given: Namespace) -> int:
         for doubt in doubts(found):
             print(f"octsim: warning: {doubt}", file=sys.stderr)
     return 0
+
+
+def _require_new(option: str, output: Path, given: str | None, config: "Config") -> None:
+    """Refuse to write over a file that is read."""
+    for key, file in {"--config": given, **config.measured.files}.items():
+        if file is not None and output.exists() and Path(file).exists() and output.samefile(file):
+            raise ConfigError(
+                f"{option}: {output} given, which is {key}'s own file; give another name"
+            )

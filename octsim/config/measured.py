@@ -32,6 +32,12 @@ AXIS_FORM = (
     "over pixels from 0, in nm"
 )
 
+INSIDE_FORM = (
+    "it should be a file, as {key}.csv, or {{at: /raw/{key}}}, in the file of spectra, or {{file: "
+    "{key}.h5, at: /raw/{key}}}"
+)
+SUBTRACTED = "subtracted"
+
 
 class RawBinary(Section):
     """How numbers stand in a raw binary file."""
@@ -61,6 +67,32 @@ class AxisPolynomial(Section):
     polynomial: Annotated[
         tuple[Number, ...], BeforeValidator(listed), Field(min_length=2, max_length=10)
     ]
+
+
+class Inside(Section):
+    """Spectra that stand in a file beside others."""
+
+    at: File
+    """Name inside the file, as /raw/dark."""
+    file: File | None = None
+    """Null is that of ``measured.spectra``."""
+
+
+def _place_kind(value: object) -> str:
+    return "inside" if isinstance(value, Inside | Mapping) else "file"
+
+
+def _place_form(key: str, value: object) -> object:
+    value = absent(value)
+    known = value is None or isinstance(value, str | Inside)
+    if known or (isinstance(value, Mapping) and {"at"} <= value.keys() <= {"at", "file"}):
+        return value
+    raise ValueError(INSIDE_FORM.format(key=key))
+
+
+_Place = Annotated[
+    Annotated[File, Tag("file")] | Annotated[Inside, Tag("inside")], Discriminator(_place_kind)
+]
 
 
 def _axis_kind(value: object) -> str:
@@ -120,11 +152,15 @@ class Measured(Section):
     ] = _key(
         None, "{wavelength: calib.csv} or {polynomial: [c0, c1, c2, c3]} in nm; null: in the file"
     )
-    dark: File | None = _key(
-        None, "file with spectra without light: their mean is subtracted, from the reference too"
+    dark: Annotated[_Place | None, BeforeValidator(partial(_place_form, "dark"))] = _key(
+        None,
+        "file with spectra without light, or {file: run7.h5, at: /raw/dark}: their mean is "
+        "subtracted, from the reference too; subtracted: it was, from all spectra",
     )
-    reference: File | None = _key(
-        None, "file with the source's own spectra, raw; null is spectrum.source, or a flat one"
+    reference: Annotated[_Place | None, BeforeValidator(partial(_place_form, "reference"))] = _key(
+        None,
+        "file with the source's own spectra, raw, or {file: run7.h5, at: /raw/source}; null is "
+        "spectrum.source, or a flat one",
     )
     dispersion: Annotated[
         Annotated[Literal["fit"], Tag("fit")] | Annotated[Dispersion, Tag("given")],
@@ -144,11 +180,23 @@ class Measured(Section):
     )
 
     @property
+    def dark_place(self) -> Inside | str | None:
+        """Where spectra without light are; None where there are none."""
+        return None if self.dark == SUBTRACTED else self.dark
+
+    def file_and_name(self, place: Inside | str) -> tuple[str, str | None]:
+        """Return the file in which spectra are, and their name inside it, if they have one."""
+        if isinstance(place, str):
+            return place, None
+        return place.file or self.spectra or "", place.at
+
+    @property
     def files(self) -> dict[str, str]:
         """The files that are named, by their keys."""
-        named: dict[str, Any] = {
-            "spectra": self.spectra, "dark": self.dark, "reference": self.reference,
-        }  # fmt: skip
+        named: dict[str, Any] = {"spectra": self.spectra}
+        for key, place in (("dark", self.dark_place), ("reference", self.reference)):
+            if place is not None:
+                named[key] = self.file_and_name(place)[0] or None
         if isinstance(self.axis, AxisFile):
             named |= {
                 "axis.wavelength": self.axis.wavelength,

@@ -38,6 +38,8 @@ _OF_TWO_KINDS = (
     ["objective", "pupil"],
     ["spectrum", "source"],
     ["measured", "axis"],
+    ["measured", "dark"],
+    ["measured", "reference"],
     ["measured", "dispersion"],
     ["focus_law", "diameters"],
     ["sweep", "diameters"],

@@ -1,11 +1,13 @@
 """What is there without the sample: the dark level, and the source's own spectrum."""
 
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from octsim.base.errors import ConfigError
+from octsim.config.measured import Measured
 from octsim.measured.axis import Axis
 from octsim.measured.open import opened_recording
 
@@ -34,7 +36,7 @@ class Mean(NamedTuple):
         return found
 
 
-def mean_of(key: str, file: str, samples: int, axis: Axis) -> Mean:
+def mean_of(key: str, file: str, at: str | None, samples: int, axis: Axis) -> Mean:
     """Return the mean over the spectra of a file, at the samples of a band.
 
     Parameters
@@ -42,6 +44,8 @@ def mean_of(key: str, file: str, samples: int, axis: Axis) -> Mean:
     key : str
         Of the config, that names the file.
     file : str
+    at : str or None
+        Name inside the file, of one with several arrays.
     samples : int
         That the sample's spectra have.
     axis : Axis
@@ -52,7 +56,7 @@ def mean_of(key: str, file: str, samples: int, axis: Axis) -> Mean:
         If it can't be read, or has another number of samples.
     """
     total, count = np.zeros((2, axis.sample.size)), 0
-    with opened_recording(file, samples=samples) as found:
+    with opened_recording(file, at, samples=samples) as found:
         if found.counts.shape[1] != samples:
             raise ConfigError(
                 f"{key}: {found.name} has {found.counts.shape[1]} samples in a spectrum, and "
@@ -69,6 +73,47 @@ def mean_of(key: str, file: str, samples: int, axis: Axis) -> Mean:
         raise ConfigError(f"{key}: {file} holds values that are no numbers; leave these out")
     spread = np.sqrt(np.maximum(squares - mean**2, 0) * count / max(count - 1, 1))
     return Mean(first + mean, spread if count > 1 else np.full_like(spread, np.nan), count)
+
+
+def without_sample(asked: Measured, samples: int, axis: Axis) -> tuple[Mean | None, Mean | None]:
+    """Return what was recorded without light, and of the source alone; None of what was not given.
+
+    Parameters
+    ----------
+    asked : Measured
+    samples : int
+        That the sample's spectra have.
+    axis : Axis
+
+    Raises
+    ------
+    OctsimError
+        If one can't be read, or is the sample's own spectra.
+    """
+    found: list[Mean | None] = []
+    for key, place in (("dark", asked.dark_place), ("reference", asked.reference)):
+        if place is None:
+            found.append(None)
+            continue
+        file, at = asked.file_and_name(place)
+        if asked.spectra and Path(file).resolve() == Path(asked.spectra).resolve():
+            _require_another_name(key, file, at, asked.at)
+        found.append(mean_of(f"measured.{key}", file, at, samples, axis))
+    return found[0], found[1]
+
+
+def _require_another_name(key: str, file: str, at: str | None, spectra: str | None) -> None:
+    """Refuse a dark or a reference that is the sample's spectra, the first of which it would be."""
+    if at is None:
+        raise ConfigError(
+            f"measured.{key}: {file} given, which is measured.spectra too; give a file of its "
+            f"own, as of what was recorded without the sample, or {{at: /raw/{key}}}"
+        )
+    if spectra is None or at.strip("/") == spectra.strip("/"):
+        raise ConfigError(
+            f"measured.{key}: {at} of the file of spectra given, and measured.at "
+            f"{'is too' if spectra else 'does not say where the spectra are'}; give both names"
+        )
 
 
 def source_by(reference: Mean, dark: Mean | None, mean: Array, axis: Axis) -> tuple[Array, Array]:
@@ -89,15 +134,9 @@ def source_by(reference: Mean, dark: Mean | None, mean: Array, axis: Axis) -> tu
     ConfigError
         If it has no light, or none where the sample's spectra have some.
     """
-    net = reference.value - (dark.value if dark else 0.0)
+    net, largest = lit(reference, dark)
     errors = [np.nan_to_num(one.error) for one in (reference, dark) if one]
     error = np.sqrt(sum(one**2 for one in errors))
-    largest = float(net.max())
-    if not largest > 0:
-        raise ConfigError(
-            "measured.reference: no light is left of it without the dark; give the source's own "
-            "spectrum, raw as the others are"
-        )
     unlit = (net <= _SURE * error) & (mean > BRIGHT * mean.max())
     if unlit.any():
         at = int(unlit.argmax())
@@ -107,3 +146,21 @@ def source_by(reference: Mean, dark: Mean | None, mean: Array, axis: Axis) -> tu
             "spectra, in the same band"
         )
     return np.maximum(net, 0) / largest, error / largest
+
+
+def lit(reference: Mean, dark: Mean | None) -> tuple[Array, float]:
+    """Return the source's counts without the dark, (K,), and the largest of them.
+
+    Raises
+    ------
+    ConfigError
+        If none is above the dark.
+    """
+    net = reference.value - (dark.value if dark else 0.0)
+    largest = float(net.max())
+    if not largest > 0:
+        raise ConfigError(
+            "measured.reference: no light is left of it without the dark; give the source's own "
+            "spectrum, raw as the others are"
+        )
+    return net, largest

@@ -1,6 +1,5 @@
 """What is found out of a recording before its phases are: axis, levels, depth, noise, fit."""
 
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -8,11 +7,11 @@ from numpy.typing import NDArray
 
 from octsim.base.errors import ConfigError
 from octsim.config.derive import calibrating
-from octsim.config.measured import Dispersion, Measured
+from octsim.config.measured import Dispersion
 from octsim.config.models import Config
 from octsim.config.source import source_of
 from octsim.measured.axis import Axis, axis_of, seconds_of, taken, within
-from octsim.measured.background import Mean, mean_of, source_by
+from octsim.measured.background import Mean, source_by, without_sample
 from octsim.measured.chain_error import reference_error
 from octsim.measured.dispersion import fitted, phase_over
 from octsim.measured.full_scale import full_scale_of, saturated
@@ -95,15 +94,11 @@ def setup_of(config: Config, recording: Recording) -> Setup:
         If something is missing or does not fit; in a line that says what to do.
     """
     asked = config.measured
-    _require_other_files(asked)
     k = axis_of(recording, asked.axis)
     time, band = seconds_of(recording, asked.rate), within(k, config.spectrum.wavelength)
-    dark = mean_of("measured.dark", asked.dark, k.size, band) if asked.dark else None
+    dark, reference = without_sample(asked, k.size, band)
     full, net = _first(recording, band, dark, asked.full_scale)
     mean = net.mean(axis=0)
-    reference = None
-    if asked.reference is not None:
-        reference = mean_of("measured.reference", asked.reference, k.size, band)
     source, source_error, known_from = _source(config, reference, dark, mean, band)
     processing = calibrating(config)
     nominal = _nominal(config)
@@ -138,16 +133,6 @@ def setup_of(config: Config, recording: Recording) -> Setup:
         design, noise, noise.variance(mean), fringe, float(free.depth[0]), dispersion,
         reference_error(model, design, mean, source_error, noise.read_noise**2),
     )  # fmt: skip
-
-
-def _require_other_files(asked: Measured) -> None:
-    """Refuse a dark or a reference that is the file of spectra, whose first spectra it would be."""
-    for key, file in (("dark", asked.dark), ("reference", asked.reference)):
-        if file and asked.spectra and Path(file).resolve() == Path(asked.spectra).resolve():
-            raise ConfigError(
-                f"measured.{key}: {file} given, which is measured.spectra too; give a file of its "
-                "own, as of what was recorded without the sample"
-            )
 
 
 def _first(

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from octsim.config.measured import SUBTRACTED
 from octsim.config.models import Config
 from octsim.measured.axis import taken
 from octsim.measured.full_scale import saturated
@@ -41,6 +42,8 @@ def _told(config: Config, recording: Recording, setup: Setup) -> Iterator[str]:
     )
     if setup.dark is not None:
         yield f"dark: {setup.dark.spectra} spectra, mean level {setup.dark.value.mean():.4g} counts"
+    if config.measured.dark == SUBTRACTED:
+        yield "dark: subtracted before"
     yield f"source: {_SOURCES[setup.source_from]}"
     full = "not known" if np.isinf(setup.full_scale) else f"{setup.full_scale:g} counts"
     count = int(
@@ -83,7 +86,7 @@ def _doubted(config: Config, setup: Setup) -> Iterator[str]:
     elif setup.source_from == "reference" and config.spectrum.source == "flat":
         yield (
             "warning: spectrum.source: flat, so a calibration is of another source than these "
-            "spectra; give it the source too, as a file of wavelength and power"
+            "spectra; give it the file that `octsim import --source source.csv` writes"
         )
     if not setup.noise.per_count and not setup.noise.read_variance:
         yield (
@@ -95,10 +98,10 @@ def _doubted(config: Config, setup: Setup) -> Iterator[str]:
             "warning: measured.reference: one spectrum given, whose noise is not known and not in "
             "chain_error; give several"
         )
-    if setup.dark is None:
+    if config.measured.dark is None:
         yield (
             "warning: measured.dark: not given, so the camera's level without light counts as "
-            "light; give spectra of a closed shutter"
+            f"light; give spectra of a closed shutter, or {SUBTRACTED} if it was before"
         )
     yield from _wrong_levels(setup)
     apart = abs(setup.measured_depth - setup.model.depth)

@@ -155,8 +155,8 @@ def test_every_key_is_edited_below() -> None:
             leaves.add(key)
     ends = {f"{key}.{end}" for key in leaves for end in ("start", "stop", "num")}
     optional = {
-        "expansion.series", "measured.spectra", "archive.title", "archive.description", "archive.date",
-        "calibration.scheme", "calibration.tolerances.scene.cylinders.0.azimuth",
+        "expansion.series", "measured.spectra", "archive.title", "archive.description",
+        "archive.date", "calibration.scheme", "calibration.tolerances.scene.cylinders.0.azimuth",
     }  # fmt: skip
     assert leaves - ends == set(EDITS) | (keys_in(OTHERS) | keys_in(SPECTRA)) - optional
 
