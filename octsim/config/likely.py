@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from octsim.config.effects import zernike_name
-from octsim.config.following import fitted_diameters
+from octsim.config.following import calibration_diameters, fitted_diameters
 from octsim.config.models import Config
 from octsim.config.source import dim
 from octsim.schemes.table import SCHEMES
@@ -28,6 +28,20 @@ def light_remarks(config: Config) -> Iterator[str]:
     yield from _beam_and_fibre(config)
     yield from _without_contrast(config)
     yield from _source(config)
+    yield from _neuron_of_a_series(config)
+
+
+def _neuron_of_a_series(config: Config) -> Iterator[str]:
+    """Say if a lab's neuron is none of those that the calibration is of."""
+    if config.expansion.series is None and config.measured.spectra is None:
+        return
+    given, table = config.expansion.diameter, calibration_diameters(config).values()
+    if not table[0] <= given <= table[-1]:
+        yield (
+            f"expansion.diameter: {given:.6g} um given, and the calibration is of {table[0]:.6g} "
+            f"to {table[-1]:.6g} um, so no change can be read from it; give calibration.diameters "
+            "that span it"
+        )
 
 
 def _source(config: Config) -> Iterator[str]:

@@ -90,6 +90,12 @@ def read_raw(source: str | Path | xr.Dataset) -> Raw:
     """
     if isinstance(source, xr.Dataset):
         return _of_dataset(source, "dataset")
+    if not isinstance(source, str | Path):
+        raise DatasetError(
+            f"spectra: {type(source).__name__} given; give a file's name, or a Dataset as "
+            'xr.Dataset({"intensity": (("time", "wavelength"), counts)}, '
+            '{"wavelength": ("wavelength", nm, {"units": "nm"})})'
+        )
     path = Path(source)
     return _of_dataset(read_variables(path), str(path)) if is_netcdf(path) else _of_csv(path)
 

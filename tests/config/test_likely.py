@@ -43,6 +43,7 @@ LIKELY: list[tuple[dict[str, Any], str]] = [
     ({"beam": {"waist": "0.2 um", "wavelength": "1 um"}}, "beam.wavelength: 1 um is outside the band, 0.65 um to 0.9 um"),
     ({"detector": FIBRE}, "detector.fibre_na: 0.13 and detector.core_diameter: 1 um are of V = 0.45 at 0.9 um, at which a fibre hardly guides light"),
     ({"scene": {"refractive_index": {"glass": 1.33}}}, "scene.layers.1: water has the index of glass below it, so no light is reflected from the plane between them"),
+    ({"expansion": {"series": "a.csv", "diameter": "4.5 um"}}, "expansion.diameter: 4.5 um given, and the calibration is of 1 to 2 um, so no change can be read"),
     ({"scene": {"refractive_index": {"neuron": 1.33}}}, "scene.cylinders.0.medium: neuron has the index of water around it"),
     ({"scene": {"layers": ["glass", GLASS, "glass"], "cylinders": []}}, "scene.layers: all are of glass, and the same material on both sides is no surface"),
 ]  # fmt: skip
@@ -64,6 +65,8 @@ def test_an_effect_that_is_likely_not_meant_is_said(overlay: dict[str, Any], lin
         shift(linear="1 um/um"),
         {"beam": {"waist": "0.2 um", "wavelength": "0.9 um"}},
         {"detector": {"falloff": "fibre"}},
+        {"expansion": {"series": "a.csv", "diameter": "2 um"}},
+        {"expansion": {"diameter": "4.5 um"}},
         {"scene": {"refractive_index": {"glass": "N-BK7", "water": "water"}}},
     ],
 )

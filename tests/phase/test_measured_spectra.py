@@ -173,6 +173,8 @@ def test_what_is_not_there_or_not_named_so_is_said(tmp_path: Path) -> None:
         {"intensity": (("x", "y", "wavelength"), np.ones((2, 2, 9)))},
         {"wavelength": ("wavelength", WAVELENGTH[:9], {"units": "nm"})},
     )
+    with pytest.raises(DatasetError, match="ndarray given; give a file's name, or a Dataset as"):
+        octsim.phase_of(np.ones((3, 100)))  # type: ignore[arg-type]
     with pytest.raises(DatasetError, match="give one besides wavelength, or none"):
         read_spectra(cube)
 

@@ -15,7 +15,7 @@ from octsim.figures.match import match_figure
 from octsim.figures.style import look
 from octsim.instrument.instrument import Instrument
 from octsim.studies.match.fit import PARAMETERS, Match, Observed, match
-from octsim.studies.match.study import _slope, doubts, match_of_spectra
+from octsim.studies.match.study import _slope, doubts, match_of_spectra, summary
 
 CONFIG = load_config({
     "tracing": {"scheme": "fullwave", "accuracy": 1e-3},
@@ -58,6 +58,16 @@ def test_its_chi_square_is_that_of_noise_and_the_config_s_is_not(found: Any) -> 
     freedom = 100 - len(PARAMETERS) - 1
     assert found.chi_square / freedom == pytest.approx(1, abs=0.5)
     assert found.configured_chi_square > 100 * found.chi_square
+
+
+def test_noise_that_is_not_all_that_is_left_is_told() -> None:
+    statistics = {
+        "configured_chi_square": 900.0, "degrees_of_freedom": 44,
+        "matched_phase_slope": 22.0, "matched_phase_slope_standard_error": 0.1,
+    }  # fmt: skip
+    told = summary(dataset(misfit=0.01).assign(chi_square=440.0, **statistics))
+    assert "freedom 10 (the fit leaves 0.01 of the spectrum; errors are widened)" in told
+    assert "widened" not in summary(dataset().assign(chi_square=44.0, **statistics))
 
 
 def dataset(**changes: float) -> xr.Dataset:

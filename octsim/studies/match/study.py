@@ -22,6 +22,8 @@ from octsim.studies.match.fit import PARAMETERS, Match, Observed, match
 from octsim.studies.responses.separability import Separability
 
 Array = NDArray[np.float64]
+_MORE = 1.5
+"""χ² over its freedom, from which more is left than noise leaves."""
 _SOURCE = 0.05
 """Root mean square difference of the sources' shapes, over the largest power, that is said."""
 
@@ -193,8 +195,10 @@ def summary(found: xr.Dataset) -> str:
         for name in PARAMETERS
     )
     reduced = float(found["chi_square"]) / float(found["degrees_of_freedom"])
+    left = f" (the fit leaves {float(found['misfit']):.2g} of the spectrum; errors are widened)"
     return (
-        f"match: {told} (um, 1); χ² over its freedom {reduced:.3g}, of the config as it is "
+        f"match: {told} (um, 1); χ² over its freedom {reduced:.3g}"
+        f"{left if reduced > _MORE else ''}, of the config as it is "
         f"{float(found['configured_chi_square']) / float(found['degrees_of_freedom']):.3g}; slope "
         f"{float(found['matched_phase_slope']):.4g} ± "
         f"{float(found['matched_phase_slope_standard_error']):.2g} mrad/nm"
