@@ -61,7 +61,7 @@ def test_its_chi_square_is_that_of_noise_and_the_config_s_is_not(found: Any) -> 
 
 
 def test_noise_that_is_not_all_that_is_left_is_told() -> None:
-    statistics = {
+    statistics: dict[str, Any] = {
         "configured_chi_square": 900.0, "degrees_of_freedom": 44,
         "matched_phase_slope": 22.0, "matched_phase_slope_standard_error": 0.1,
     }  # fmt: skip
