@@ -14,6 +14,7 @@
 # make test-slurm                             the same results on a private Slurm of one node
 # make bench-slurm                            what Slurm adds to each job
 # make kills                                  30 kills at random moments, 30 same results
+# make soak [MINUTES=20]                      random configs under kills, signals, full disks, optional
 # make mutants [NUMBER=300]                   wrong changes to the package that no test notices, long
 # make lock                                   resolve the dependencies anew
 PYTHON ?= python3
@@ -32,7 +33,7 @@ export GIVEN_FILE := $(value FILE)
 export GIVEN_INTO := $(value INTO)
 
 .PHONY: results archive reproduce test test-all test-processors lint format docs site bench bench-sweeps \
-	bench-peers kills mutants lock slurm test-slurm bench-slurm clean
+	bench-peers kills soak mutants lock slurm test-slurm bench-slurm clean
 results: .venv/run
 	@exec $(BIN)/octsim run "$$GIVEN_CONFIG" --cores "$(CORES)"
 
@@ -130,6 +131,10 @@ bench-peers: .venv-peers/rays/run .venv-peers/waves/run .venv-peers/cycles/run
 
 kills: .venv/dev
 	OCTSIM_KILLS=30 $(BIN)/pytest -n 2 tests/workflow/test_kill.py tests/instrument/test_point_store.py -k killed
+
+MINUTES ?= 20
+soak: .venv/dev
+	PYTHONPATH=benchmarks:tests $(BIN)/python -P -m soak --minutes $(MINUTES) --write
 
 NUMBER ?= 300
 mutants: .venv/dev

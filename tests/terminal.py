@@ -5,6 +5,7 @@ import fcntl
 import os
 import pty
 import re
+import signal
 import struct
 import subprocess
 import termios
@@ -34,6 +35,8 @@ class Terminal:
         self.pid, self._end = pty.fork()
         if self.pid == 0:
             try:
+                for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                    signal.signal(number, signal.SIG_DFL)  # whatever is ignored here, as by nohup
                 os.chdir(folder)
                 os.execvpe(command[0], list(command), {**os.environ, **environment})
             finally:
@@ -62,6 +65,10 @@ class Terminal:
     def kill(self, number: int) -> None:
         """Send a signal to the command alone."""
         os.kill(self.pid, number)
+
+    def has_ended(self) -> bool:
+        """Return whether the command has ended; its status can still be asked for."""
+        return os.waitid(os.P_PID, self.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None
 
     def status(self) -> int:
         """Return the exit status as a shell tells it, once the command has ended."""
@@ -94,13 +101,13 @@ class Terminal:
         return [line.rstrip() for line in lines if line.strip()]
 
 
-def processes_in(folder: Path) -> list[str]:
-    """Return the commands of the processes that work in a folder or tell of it."""
+def processes_in(folder: Path) -> dict[int, str]:
+    """Return the processes that work in a folder, with the command of each."""
     shown = subprocess.run(["ps", "-eo", "pid,args"], capture_output=True, text=True, check=True)
-    found = []
+    found = {}
     for line in shown.stdout.splitlines()[1:]:
         process, _, command = line.strip().partition(" ")
         with contextlib.suppress(OSError):
             if Path(f"/proc/{process}/cwd").readlink() == folder:
-                found.append(command)
+                found[int(process)] = command
     return found

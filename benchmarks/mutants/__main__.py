@@ -17,6 +17,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any
 
+from marked import write_part
 from mutants import page
 from mutants.changes import Change, changes
 from mutants.tests_of import OwnTests
@@ -70,7 +71,7 @@ def main() -> None:
     told = page.lines(ROOMS, drawn, noticed, asked.seed, (asked.longest, asked.seconds))
     print(*told, sep="\n")
     if asked.write:
-        page.write(ROOT / "docs" / "mutants.md", told)
+        write_part(ROOT / "docs" / "mutants.md", "mutants", told)
 
 
 def _try(left: Sequence[Change], noticed: dict[str, str], asked: argparse.Namespace) -> None:

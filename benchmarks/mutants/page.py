@@ -8,7 +8,6 @@ from pathlib import Path
 import yaml
 from mutants.changes import Change
 
-BEGIN, END = "<!-- mutants: begin -->", "<!-- mutants: end -->"
 REASONS = Path(__file__).with_name("reasons.yaml")
 
 
@@ -62,15 +61,6 @@ def lines(
         why = told.get(one.name, "not looked into")
         found.append(f"- `{one.module}`, line {one.line}: `{one.was}` to `{one.now}`: {why}")
     return found
-
-
-def write(page: Path, made: Sequence[str]) -> None:
-    """Replace what stands between the marks of a page."""
-    before, _, rest = page.read_text(encoding="utf-8").partition(BEGIN)
-    text = "\n".join([before + BEGIN, *made, END]) + rest.partition(END)[2]
-    partial = page.with_name(f".{page.name}.partial")
-    partial.write_text(text, encoding="utf-8")
-    partial.replace(page)
 
 
 def _row(room: str, counts: Mapping[str, int]) -> str:

@@ -6,8 +6,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from marked import marks, write_part
 from mutants.changes import changes
-from mutants.page import BEGIN, END, lines, write
+from mutants.page import lines
 from mutants.tests_of import OwnTests
 
 ROOT = Path(__file__).parents[2]
@@ -142,8 +143,10 @@ def test_the_page_counts_what_is_noticed_and_lists_the_rest(checkout: Path) -> N
     drawn = changes(checkout, "octsim/optics/part.py")[:4]
     noticed = {one.name: "a test" for one in drawn} | {drawn[3].name: ""}
     page = checkout / "page.md"
-    page.write_text(f"Head.\n\n{BEGIN}\nold\n{END}\n\nFoot.\n")
-    write(page, lines({"all of it": ["octsim/*"]}, drawn, noticed, "seed", (3, 60)))
+    begin, end = marks("mutants")
+    page.write_text(f"Head.\n\n{begin}\nold\n{end}\n\nFoot.\n")
+    told = lines({"all of it": ["octsim/*"]}, drawn, noticed, "seed", (3, 60))
+    write_part(page, "mutants", told)
     text = page.read_text()
     assert text.startswith("Head.")
     assert text.endswith("Foot.\n")

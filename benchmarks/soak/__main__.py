@@ -1,0 +1,133 @@
+"""Runs under faults, for as long as is wanted: random configs, and bits that are compared.
+
+Run by `make soak`, which writes docs/reliability.md:
+
+    python -m soak [--minutes M] [--stops N] [--seed TEXT] [--write]
+"""
+
+import argparse
+import sys
+import tempfile
+import time
+from itertools import islice
+from pathlib import Path
+from random import Random
+from signal import SIGKILL, SIGTERM
+from signal import signal as on_signal
+
+from marked import write_part
+from soak.drawn import Drawn, drawn
+from soak.page import Found, first_line
+from soak.runs import Run, Seen, differing, filled, moments, small_disk, two_at_once
+
+ROOT = Path(__file__).parents[2]
+_STOPS = 9  # of one run at most, which else would never come to its end
+_EVERY = 6  # rounds, of which one has two runs at once, and another a full disk
+
+
+def main() -> int:
+    """Soak, say what was found, and return 1 if anything was not as it should be."""
+    parser = argparse.ArgumentParser(description=__doc__, prog="python -m soak")
+    parser.add_argument("--minutes", type=float, default=20.0, help="begin no round after (20)")
+    parser.add_argument("--stops", type=int, help="end once each signal has hit so many runs")
+    parser.add_argument("--seed", default="octsim", help="of all that is drawn")
+    parser.add_argument("--write", action="store_true", help="write docs/reliability.md")
+    asked = parser.parse_args()
+    on_signal(SIGTERM, lambda *_: sys.exit("stopped"))  # folders and small disks go
+    found, began = Found(asked.seed), time.monotonic()
+    number = 0
+    while True:
+        found.minutes = (time.monotonic() - began) / 60
+        enough = asked.stops and min(found.stops.values(), default=0) >= asked.stops
+        if enough or found.minutes > asked.minutes:
+            break
+        number += 1
+        with tempfile.TemporaryDirectory(prefix="octsim-soak-") as name:
+            one_round(Path(name), Random(f"{asked.seed} {number}"), number, found)
+        print(f"{number}: {found.stops}, {len(found.wrong)} wrong", flush=True)
+    print(*found.lines(), sep="\n")
+    if asked.write:
+        write_part(ROOT / "docs" / "reliability.md", "soak", found.lines())
+    return bool(found.wrong)
+
+
+def one_round(folder: Path, draw: Random, number: int, found: Found) -> None:
+    """Run one config whole, then with what is drawn for it, and compare."""
+    config = drawn(draw)
+    wrong = _Wrong(found, f"config {number}")
+    first = Run(folder / "whole", config)
+    began = time.monotonic()
+    seen = first.whole()
+    seconds, right = time.monotonic() - began, first.results()
+    _count(found, config)
+    if seen.status or seen.wrong:
+        wrong.say("a run that nothing happens to", "\n".join(seen.screen))
+        return
+    stopped = Run(folder / "stopped", config)
+    for signal, after in islice(moments(draw, seconds), _STOPS):
+        stop = stopped.stopped(signal, after)
+        wrong.say(f"{signal.name} after {after:.2f} s", stop.wrong)
+        if not stop.hit:
+            break
+        found.stops[signal.name] = found.stops.get(signal.name, 0) + 1
+        if signal != SIGKILL:
+            longest = max(stop.seconds, found.longest.get(signal.name, 0.0))
+            found.longest[signal.name] = longest
+    _go_on(stopped, right, wrong, found)
+    if number % _EVERY == 0:
+        pair = Run(folder / "one", config), Run(folder / "other", config)
+        every, cleared = two_at_once(*pair, folder / "cache")
+        found.together, found.cleared = found.together + 1, found.cleared + cleared
+        for one in every:
+            wrong.say("two at once", one.wrong or ("" if one.status == 0 else _told(one)))
+        for run in pair:
+            found.compared += 1
+            wrong.say("two at once", ", ".join(differing(run.results(), right)))
+    if number % _EVERY == _EVERY // 2:
+        with small_disk(folder / "disk") as there:
+            if there:
+                run = Run(folder / "disk" / "run", config)
+                seen = filled(run, folder / "disk", draw.uniform(0, seconds))
+                found.full, found.failed_full = (
+                    found.full + 1,
+                    found.failed_full + bool(seen.status),
+                )
+                wrong.say("a full disk", seen.wrong)
+                _go_on(run, right, wrong, found)
+
+
+class _Wrong:
+    """Notes what is not as it should be, with its config."""
+
+    def __init__(self, found: Found, of: str) -> None:
+        self._found, self._of = found, of
+
+    def say(self, what: str, wrong: str) -> None:
+        """Note it, if there is anything."""
+        if wrong:
+            print(f"WRONG: {self._of}, {what}:\n{wrong}", flush=True)
+            self._found.wrong.append(f"{self._of}, {what}: {first_line(wrong)}")
+
+
+def _go_on(run: Run, right: dict[str, bytes], wrong: _Wrong, found: Found) -> None:
+    """Run the same command again, and compare."""
+    seen = run.whole()
+    wrong.say("the same command again", seen.wrong or ("" if seen.status == 0 else _told(seen)))
+    found.compared += 1
+    wrong.say("the same command again", ", ".join(differing(run.results(), right)))
+
+
+def _told(seen: Seen) -> str:
+    return f"status {seen.status}: " + "\n".join(seen.screen)
+
+
+def _count(found: Found, config: Drawn) -> None:
+    scheme = config.overlay["tracing"]["scheme"]
+    found.configs += 1
+    found.schemes[scheme] = found.schemes.get(scheme, 0) + 1
+    found.grids += "grid" in config.overlay
+    found.scattered += config.scattered
+
+
+if __name__ == "__main__":
+    sys.exit(main())
