@@ -35,6 +35,7 @@ from octsim.base import clock
 from octsim.base.errors import OctsimError
 from octsim.base.files import digest_of, is_regular, require_folder
 from octsim.base.provenance import lock_file, source_digest
+from octsim.base.say import noting_for
 from octsim.cli.job_server import PYTHON, SOCKET, start
 from octsim.cli.told import edit_of, result_of
 from octsim.config.derive import parts_of
@@ -63,6 +64,7 @@ def say(line: str) -> None:
 
 if workflow.cores is not None and workflow.cores < 1:
     sys.exit(f"octsim: --cores: {workflow.cores} given; give 1 or more")
+noting_for("reading")
 try:
     # the files themselves too, as snakemake's own reading lets a key stand twice
     run, said = load_and_tell(*workflow.configfiles, config)

@@ -105,12 +105,14 @@ class Screen:
     def _progress(self) -> str:
         """Return what is being done, how far it is and for how long it has been."""
         if self._waits_for:
-            return f"{self._waits_for} {tqdm.format_interval(time.monotonic() - self._began)}"
+            waited = tqdm.format_interval(time.monotonic() - self._began)
+            return f"{self._waits_for} {waited}{self._noted('reading')}"
         every = list(self._running.values())
-        return " | ".join(f"{work.name} {work.seconds()}{self._noted(work)}" for work in every)
+        return " | ".join(f"{work.name} {work.seconds()}{self._noted(work.name)}" for work in every)
 
-    def _noted(self, work: _Work) -> str:
+    def _noted(self, name: str) -> str:
+        """Return what a job has noted, or what reads the config, of that name."""
         with suppress(OSError):
-            if words := Path(self._notes.name, work.name).read_text(encoding="utf-8"):
+            if words := Path(self._notes.name, name).read_text(encoding="utf-8"):
                 return f", {words}"
         return ""

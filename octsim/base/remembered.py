@@ -2,7 +2,7 @@
 
 import functools
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TypeVar
 
 _MOST = 4096
 """Of things that a function remembers, and holds meanwhile."""
@@ -10,30 +10,21 @@ _Thing = TypeVar("_Thing")
 _Found = TypeVar("_Found")
 
 
-class _Same:
-    """A thing that is equal to itself alone: comparing what is in it takes longer."""
-
-    __slots__ = ("thing",)
-
-    def __init__(self, thing: Any) -> None:
-        self.thing = thing
-
-    def __hash__(self) -> int:
-        return id(self.thing)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and self.thing is other.thing
-
-
 def remembered(function: Callable[[_Thing], _Found]) -> Callable[[_Thing], _Found]:
     """Return a pure function of frozen things that works once for each of them."""
-
-    @functools.lru_cache(maxsize=_MOST)
-    def found(same: _Same) -> _Found:
-        return function(same.thing)
+    # by which thing it is, as comparing what is in it takes longer; held, so that it stays the only
+    # one of its number
+    found: dict[int, tuple[_Thing, _Found]] = {}
 
     @functools.wraps(function)
     def asked(thing: _Thing) -> _Found:
-        return found(_Same(thing))
+        before = found.get(id(thing))
+        if before is not None:
+            return before[1]
+        result = function(thing)
+        if len(found) >= _MOST:
+            found.clear()
+        found[id(thing)] = thing, result
+        return result
 
     return asked

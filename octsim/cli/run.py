@@ -11,6 +11,7 @@ from contextlib import suppress
 from difflib import get_close_matches
 from importlib.util import find_spec
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import FrameType
 from typing import Any
 
@@ -74,16 +75,20 @@ def require_workflow() -> None:
 def run(given: argparse.Namespace) -> int:
     """Check the config, have the workflow make what is asked for; return the exit status."""
     stops_at_signals(tuple)  # until the workflow is started
+    from octsim.config.handed import FOLDER
     from octsim.config.load import load_and_tell
 
     require_workflow()
     configs, targets = _told_apart(given.words)
     configs = configs or [str(workflow_folder() / "config" / "default.yaml")]
+    looked = TemporaryDirectory(prefix="octsim-looked-")
+    os.environ[FOLDER] = looked.name  # by the processes of the run it is not looked at again
     config, _ = load_and_tell(*configs)
     shown = "quiet" if given.quiet else "verbose" if given.verbose else ""
     if not (shown or given.flags) and sys.stderr.isatty():
         print("octsim: starting snakemake …", end="", file=sys.stderr, flush=True)
-    return _Running(_command(configs, targets, config.run, given), given.flags, shown).ended()
+    with looked:
+        return _Running(_command(configs, targets, config.run, given), given.flags, shown).ended()
 
 
 def _told_apart(words: Sequence[str]) -> tuple[list[str], list[str]]:

@@ -44,12 +44,20 @@ def _ranges(model: BaseModel) -> list[tuple[str, Range]]:
     return found
 
 
-def _ranges_of(config: Config) -> Iterator[tuple[str, Range]]:
-    for section in type(config).model_fields:
-        value = getattr(config, section)
-        if isinstance(value, BaseModel):
-            for key, span in _ranges(value):
-                yield f"{section}.{key}", span
+@remembered
+def _wrong_ranges(section: BaseModel) -> tuple[tuple[str, str], ...]:
+    """Return the keys of a section's ranges that are none, and what is said of each."""
+    found = []
+    for key, span in _ranges(section):
+        if not span.start < span.stop:
+            given = span.model_dump(mode="json")
+            said = f"{given['start']} given; it must be below"
+            found.append((f"{key}.start", f"{said} {{}}.{key}.stop = {given['stop']}"))
+        step = (span.stop - span.start) / (span.num - 1)
+        if 0 < step < _FINEST:
+            said = f"{span.num} given; its values would be {step:.2g} apart, but are rounded to"
+            found.append((f"{key}.num", f"{said} 1e-{DECIMALS}; give fewer, or a wider range"))
+    return tuple(found)
 
 
 def highest_focus(config: Config) -> tuple[str, float]:
@@ -99,19 +107,10 @@ def impossible(config: Config) -> Iterator[str]:
             "processing.sinusoid.envelope: 'common' given, which is for a series at one diameter; "
             "a sweep needs 'each'"
         )
-    for key, span in _ranges_of(config):
-        if not span.start < span.stop:
-            given = span.model_dump(mode="json")
-            yield (
-                f"{key}.start: {given['start']} given; it must be below {key}.stop = "
-                f"{given['stop']}"
-            )
-        step = (span.stop - span.start) / (span.num - 1)
-        if 0 < step < _FINEST:
-            yield (
-                f"{key}.num: {span.num} given; its values would be {step:.2g} apart, but are "
-                f"rounded to 1e-{DECIMALS}; give fewer, or a wider range"
-            )
+    for section in type(config).model_fields:
+        value = getattr(config, section)
+        for key, said in _wrong_ranges(value) if isinstance(value, BaseModel) else ():
+            yield f"{section}.{key}: {said.format(section)}"
     key, focus = highest_focus(config)
     distance = config.objective.focus_distance
     by = ""

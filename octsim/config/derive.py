@@ -85,7 +85,7 @@ _INSTEAD = {"num": "step", "step": "num"}
 
 
 def _laid(below: Any, value: Any) -> Any:
-    if not isinstance(value, Mapping):
+    if isinstance(value, str) or not isinstance(value, Mapping):
         return value
     if isinstance(below, list) and value and value.keys() <= {str(i) for i in range(len(below))}:
         return [_laid(part, value.get(str(place), part)) for place, part in enumerate(below)]
@@ -182,8 +182,9 @@ class ConfigsAt:
                 laid = merge(laid, nested(key, values[key]))
             model: Any = Config.model_fields[name].annotation
             found = model.model_validate(overlaid({name: self._base[name]}, laid)[name]), own
-            if len(self._made) < _MOST_MADE:
-                self._made[which] = found
+            if len(self._made) >= _MOST_MADE:  # the first go, as neighbours have the last in common
+                del self._made[next(iter(self._made))]
+            self._made[which] = found
         return found[0]
 
 

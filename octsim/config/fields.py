@@ -9,6 +9,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from octsim.config.units import Length
 
+_PLAIN = {str, int, float, bool, type(None)}
+
 
 def number(value: object) -> object:
     """Return the number that text as 1e-6 plainly is; YAML 1.1 reads it as text, without a dot."""
@@ -35,6 +37,8 @@ def listed(value: object) -> object:
 
 def plain_data(value: Any) -> Any:
     """Return lists and numbers in the place of arrays, other sequences and numpy's numbers."""
+    if type(value) in _PLAIN:  # most are, and to ask for a mapping takes ten times as long
+        return value
     if isinstance(value, Mapping):
         return {key: plain_data(part) for key, part in value.items()}
     if isinstance(value, BaseModel | str | bytes | int | float) and not hasattr(value, "dtype"):

@@ -104,17 +104,35 @@ def combinations(config: Config, *keys: str) -> Iterator[Combination]:
         yield Combination(position, values, configs.at(values))
 
 
+class Remarks:
+    """What is possible but likely not meant, of combinations that are added one after the other."""
+
+    def __init__(self) -> None:
+        self._said: dict[str, list[str]] = {}
+        self._total = 0
+
+    def add(self, config: Config) -> None:
+        """Add what is to be said of a combination's config."""
+        self._total += 1
+        for remark in plain_remarks(config):
+            self._said.setdefault(_NUMBERS.sub("", remark), []).append(remark)
+
+    def lines(self) -> list[str]:
+        """Return a line for each that is alike but for its numbers."""
+        return [
+            f"{lines[0]} (at {len(lines)} of {self._total} combinations)"
+            for lines in self._said.values()
+        ]
+
+
 def remarks(config: Config) -> list[str]:
     """Return what is possible but likely not meant, a line each, of all combinations together."""
     if not config.grid.varied:
         return plain_remarks(config)
-    said: dict[str, list[str]] = {}
-    total = 0
+    said = Remarks()
     for combination in combinations(config):
-        total += 1
-        for remark in plain_remarks(combination.config):
-            said.setdefault(_NUMBERS.sub("", remark), []).append(remark)
-    return [f"{lines[0]} (at {len(lines)} of {total} combinations)" for lines in said.values()]
+        said.add(combination.config)
+    return said.lines()
 
 
 def without_grid(config: Config, target: str) -> Config:

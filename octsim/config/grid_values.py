@@ -4,15 +4,24 @@ import contextlib
 import itertools
 import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from pydantic import ValidationError
 
 from octsim.base.errors import ConfigError
+from octsim.base.waiting import uncollected, watched
 from octsim.config.checks import impossible
 from octsim.config.derive import ConfigsAt, overlap, part_of
-from octsim.config.grid import as_text, axes, combinations, row_text, value_at
+from octsim.config.grid import (
+    Combination,
+    Remarks,
+    as_text,
+    axes,
+    combinations,
+    row_text,
+    value_at,
+)
 from octsim.config.grid_keys import plain_key, require_varied
 from octsim.config.known_keys import known_keys
 from octsim.config.messages import explain
@@ -24,10 +33,12 @@ MOST = 100_000
 """Combinations of one grid."""
 _RANGES = ({"start", "stop", "num"}, {"start", "stop", "step"})
 _SHOWN = 5  # problems of combinations that are listed
+_LOOKING = "looking at the grid"
 _COUNTED = 1000  # of more of them, it is said that they are many
 
 
-def expanded(config: Config, *, whole: bool = True) -> Config:
+@uncollected()
+def expanded(config: Config, *, whole: bool = True) -> tuple[Config, list[str]]:
     """Check a config's grid as a whole, and write its values out as lists in the config's units.
 
     Parameters
@@ -36,6 +47,12 @@ def expanded(config: Config, *, whole: bool = True) -> Config:
         A config whose sections are checked.
     whole : bool
         Whether each combination is looked at, and not the values alone.
+
+    Returns
+    -------
+    config : Config
+    remarks : list of str
+        What is possible but likely not meant (`octsim.config.grid.remarks`), if all is looked at.
 
     Raises
     ------
@@ -54,32 +71,80 @@ def expanded(config: Config, *, whole: bool = True) -> Config:
     problems: dict[str, None] = {}
     plain = {key: list(values) for key, values in listed.items()}
     configs = ConfigsAt({**given.to_dict(), "grid": {}})
-    firsts = {key: values[0] for key, values in listed.items()}
-    for key, values in listed.items():
-        for position, value in enumerate(values):
-            others = {k: v[position] for k, v in listed.items()} if _zipped(config) else firsts
-            try:
-                one = configs.at({**others, key: value})
-            except ValidationError as error:
-                for line in map(explain, error.errors()):
-                    of_grid = any(overlap(line.split(":")[0], other) for other in listed)
-                    problems[f"grid.{line}" if of_grid else line] = None
-                if len(problems) > _COUNTED:
-                    _raise(problems)
-            else:
-                section = key.partition(".")[0]
-                data = {section: getattr(one, section).model_dump(mode="json")}
-                plain[key][position] = part_of(data, key)
+    looked = _Looked(whole)
+    # along one axis, what a value is tried in is a combination, and is looked at while it is there
+    alone = _zipped(config) or len(listed) == 1
+    tried = max(map(len, listed.values())) if alone else sum(map(len, listed.values()))
+    for position, keys, values in watched(_tried(listed, together=alone), tried, _LOOKING):
+        try:
+            one = configs.at(values)
+        except ValidationError as error:
+            for line in map(explain, error.errors()):
+                of_grid = any(overlap(line.split(":")[0], other) for other in listed)
+                problems[f"grid.{line}" if of_grid else line] = None
+            if len(problems) > _COUNTED:
+                _raise(problems)
+        else:
+            for key in keys:
+                plain[key][position] = _plain_at(one, key)
+            if alone and not problems:
+                there = {key: plain[key][position] for key in keys}
+                looked.at(Combination((position,), there, one))
     _raise(problems)
     checked = given.model_copy(update={"grid": _grid(config, plain)})
     _check_rows(checked)
-    for combination in combinations(checked) if whole else ():
+    if whole and not alone:
+        every = math.prod(map(len, plain.values()))
+        for combination in watched(combinations(checked), every, _LOOKING):
+            looked.at(combination)
+    _raise(looked.problems)
+    return checked, looked.remarks.lines()
+
+
+class _Looked:
+    """What is wrong with combinations, and what is likely not meant.
+
+    Parameters
+    ----------
+    whole : bool
+        Whether they are looked at.
+    """
+
+    def __init__(self, whole: bool) -> None:
+        self.problems: dict[str, None] = {}
+        self.remarks = Remarks()
+        self._whole = whole
+
+    def at(self, combination: Combination) -> None:
+        """Look at one."""
+        if not self._whole or len(self.problems) > _COUNTED:
+            return
         for line in impossible(combination.config):
-            problems[f"grid, at {combination}: {line}"] = None
-        if len(problems) > _COUNTED:
-            break
-    _raise(problems)
-    return checked
+            self.problems[f"grid, at {combination}: {line}"] = None
+        if not self.problems:  # else nothing but these is said
+            self.remarks.add(combination.config)
+
+
+def _tried(
+    listed: Mapping[str, list[Any]], *, together: bool
+) -> Iterator[tuple[int, tuple[str, ...], dict[str, Any]]]:
+    """Yield a position, the keys whose values there are tried, and what all keys are meanwhile."""
+    if together:
+        for position, row in enumerate(zip(*listed.values(), strict=True)):
+            yield position, tuple(listed), dict(zip(listed, row, strict=True))
+        return
+    firsts = {key: values[0] for key, values in listed.items()}
+    for key, values in listed.items():
+        for position, value in enumerate(values):
+            yield position, (key,), {**firsts, key: value}
+
+
+def _plain_at(config: Config, key: str) -> Any:
+    """Return what stands under a key of a config, as plain data."""
+    section, _, rest = key.partition(".")
+    # the key's part of the section alone, as each is written on its own
+    only = {rest.partition(".")[0]} if rest else None
+    return part_of({section: getattr(config, section).model_dump(mode="json", include=only)}, key)
 
 
 def _zipped(config: Config) -> bool:

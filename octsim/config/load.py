@@ -8,11 +8,11 @@ from typing import Any
 
 from octsim.base.errors import ConfigError, OctsimWarning, one_line
 from octsim.config.bounds import bounded, require_bounded
-from octsim.config.checks import require_possible
+from octsim.config.checks import plain_remarks, require_possible
 from octsim.config.derive import merge, overlaid, validated
 from octsim.config.fields import plain_data
-from octsim.config.grid import remarks
 from octsim.config.grid_values import expanded
+from octsim.config.handed import Handed, hand, handed
 from octsim.config.models import Config
 from octsim.config.overlay_file import read_overlay as read_overlay
 from octsim.config.study_checks import wrong_for_studies
@@ -97,8 +97,11 @@ def load_checked(overlay: Mapping[str, Any]) -> Config:
     ConfigError
         If a key or a value is wrong.
     """
-    config = validated(overlaid(Config().to_dict(), plain_data(overlay)))
-    return expanded(config, whole=False) if config.grid.varied else config
+    given = plain_data(overlay)
+    if given.get("grid") and (found := handed(given)):
+        return validated(found.config)
+    config = validated(overlaid(Config().to_dict(), given))
+    return expanded(config, whole=False)[0] if config.grid.varied else config
 
 
 def _loaded(overlays: Iterable[str | Path | Mapping[str, Any]]) -> tuple[Config, list[str]]:
@@ -111,13 +114,19 @@ def _loaded(overlays: Iterable[str | Path | Mapping[str, Any]]) -> tuple[Config,
         require_points(own)
         asked |= asked_for(own, given)
         given = merge(given, own)
+    if given.get("grid") and (found := handed(given)):
+        return validated(found.config), found.said
     config = validated(overlaid(Config().to_dict(), given))
     if config.grid.varied:
-        config = expanded(config)
+        config, said = expanded(config)
     else:
         require_possible(config)
+        said = plain_remarks(config)
     # here alone: studies of other scenes leave out what these do not have
     if wrong := bounded(wrong_for_studies(config)):
         raise ConfigError(*wrong)
-    said = [*remarks(config), *unread(config, asked), *unread_scene(config, asked)]
-    return config, list(map(one_line, said))
+    said = [*said, *unread(config, asked), *unread_scene(config, asked)]
+    said = list(map(one_line, said))
+    if config.grid.varied:
+        hand(given, Handed(config.to_dict(), said))
+    return config, said

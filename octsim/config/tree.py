@@ -1,5 +1,6 @@
 """How large the trees of counted rays are in a config's scene, by estimate."""
 
+import functools
 from collections.abc import Iterator
 from itertools import pairwise
 
@@ -39,11 +40,16 @@ def _changes(media: list[str]) -> int:
     return sum(one != other for one, other in pairwise(media))
 
 
+@functools.cache
+def _most_meetings(surfaces: int) -> int:
+    return next(n for n in range(64) if (2 * surfaces) ** (n + 1) >= MOST_PATHS)
+
+
 def impossible_tree(config: Config) -> Iterator[str]:
     """Say if the trees of a point go beyond what can be kept, or their paths beyond numbers."""
     surfaces, given = paths_by_digits(config.scene), config.tracing.max_intersections
     if surfaces and SCHEMES[config.tracing.scheme].light == "rays":
-        most = next(n for n in range(64) if (2 * surfaces) ** (n + 1) >= MOST_PATHS)
+        most = _most_meetings(surfaces)
         if given > most:
             yield (
                 f"tracing.max_intersections: {given} given, but the light paths of so many "
