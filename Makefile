@@ -70,7 +70,7 @@ docs: results .venv/dev
 	$(BIN)/python docs/generate.py
 
 site: .venv/dev
-	rm -rf docs/_site docs/api
+	rm -rf docs/_site docs/api docs/jupyter_execute
 	$(BIN)/sphinx-build -q -W --keep-going docs docs/_site
 
 .venv/bin/python:

@@ -20,7 +20,7 @@ FETCHED = re.compile(
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Build it as `make site` does, in another folder."""
-    built = tmp_path_factory.mktemp("site")
+    built = tmp_path_factory.mktemp("site") / "_site"  # notebooks are executed beside it
     command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", str(DOCS), str(built)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -43,6 +43,14 @@ def test_formulas_are_drawn_without_a_script(site: Path) -> None:
     text = (site / "equations.html").read_text(encoding="utf-8")
     assert text.count("<math ") > 20
     assert "munderover" not in text
+
+
+def test_notebooks_show_what_their_cells_put_out(site: Path) -> None:
+    for name, pictures in {"slope": 2, "maxwell": 2, "lab": 1}.items():
+        text = (site / f"notebook-{name}.html").read_text(encoding="utf-8")
+        assert text.count("_images/") >= pictures
+        assert re.search(r'class="output [^>]*>.*?[0-9.]+ mrad', text, flags=re.DOTALL)
+        assert "Traceback" not in text
 
 
 def test_no_page_fetches_anything_from_elsewhere(site: Path) -> None:
