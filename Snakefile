@@ -44,7 +44,7 @@ from octsim.config.models import Config
 from octsim.config.told import told
 from octsim.datasets.catalog import CATALOG, TARGETS, jobs
 from octsim.datasets.code import code_of, figures_code
-from octsim.datasets.gallery import CAPTIONS, drawn_with, run_figures
+from octsim.datasets.gallery import ANIMATION, CAPTIONS, drawn_with, run_figures
 from octsim.datasets.keys import inputs_of, jobs_of, keys_read, stages_of
 from octsim.datasets.stage import Stage
 from octsim.stages.cost_estimate import check_budget, expected
@@ -109,6 +109,7 @@ SPECTRA = [file for file in run.measured.files.values() if is_regular(file)]
 LOCK = FileLock(f"{FOLDER}/.lock")  # held from the start of a run to its end
 # of other targets, what was asked for once: an archive has it too, brought up to date
 BESIDE = [file for file in (f"{FOLDER}/{target}.nc" for target in TARGETS) if Path(file).is_file()]
+MOVING = f"{FOLDER}/figures/{ANIMATION.name}.gif"
 
 
 # for `--sdm apptainer` alone: the image that `apptainer build octsim.sif apptainer.def` makes
@@ -324,6 +325,23 @@ rule figures:
         "workflow/scripts/job.py"
 
 
+rule animation:
+    input:
+        **{name: f"{FOLDER}/{name}.nc" for name in ANIMATION.of},
+    output:
+        update(MOVING),
+    log:
+        f"{FOLDER}/logs/animation.log",
+    resources:
+        **needs("focus_scan"),
+    params:
+        made_from=lambda _: made_from(figures_code(ANIMATION), *keys_read("focus_scan", run)),
+    message:
+        "Animate the focus scan"
+    script:
+        "workflow/scripts/job.py"
+
+
 rule report:
     input:
         [f"{FOLDER}/{stage}.nc" for stage in stages_of(run)],
@@ -348,6 +366,7 @@ rule archive:
         rules.all.input,
         rules.report.output,
         BESIDE,
+        [MOVING] if Path(MOVING).is_file() else [],
     output:
         update(f"{FOLDER}/{run.run}.zip"),
     log:

@@ -18,7 +18,7 @@ from octsim.config.archive import ArchiveConfig
 from octsim.config.models import Config
 from octsim.datasets.catalog import TARGETS
 from octsim.datasets.files import guarded
-from octsim.datasets.gallery import CAPTIONS, drawn_with, figures_of
+from octsim.datasets.gallery import ANIMATION, CAPTIONS, drawn_with, figures_of
 from octsim.datasets.keys import stages_of
 
 CONFIG = "config.yaml"
@@ -86,6 +86,7 @@ def items_of(run: Run, config: Config) -> list[Item]:
     return [
         *datasets,
         *_figures(run, config),
+        *_animation(run),
         *_report(run),
         Item(CONFIG, "config of the run, every key", text.encode(), "application/yaml"),
         Item(
@@ -123,6 +124,17 @@ def _figures(run: Run, config: Config) -> list[Item]:
         for file in run.figures
         if file.stem in stages and file.suffix in _FORMS
     ]  # fmt: skip
+
+
+def _animation(run: Run) -> list[Item]:
+    """Return the animation of a run, if it was asked for."""
+    name = f"{ANIMATION.name}.gif"
+    stages = tuple(stage for stage in ANIMATION.of if stage in run.datasets)
+    return [
+        Item(f"{FIGURES}/{name}", ANIMATION.caption, file, "image/gif", stages=stages)
+        for file in run.figures
+        if file.name == name and stages
+    ]
 
 
 def _report(run: Run) -> list[Item]:

@@ -30,7 +30,7 @@ class Task(NamedTuple):
     """What a job is told: plain data alone, as it may come from another process."""
 
     name: str
-    """Of the job: one of the catalog's, figures, report or archive."""
+    """Of the job: one of the catalog's, figures, animation, report or archive."""
     folder: str
     """Of the run."""
     config: Mapping[str, Any]
@@ -60,7 +60,8 @@ def do(task: Task) -> int:
     logging.captureWarnings(capture=True)
     logging.raiseExceptions = False  # a full disk is said once, by what hits it
     warnings.simplefilter("ignore", OctsimWarning)  # the workflow has said these once
-    work = {"figures": _draw, "report": _report, "archive": _archive}.get(task.name, _make)
+    others = {"figures": _draw, "animation": _animate, "report": _report, "archive": _archive}
+    work = others.get(task.name, _make)
     try:
         work(task, folder, load_checked(task.config))
         if task.share == [1, 1]:
@@ -125,6 +126,16 @@ def _draw(task: Task, folder: Path, config: Config) -> None:
     for stale in set(all_run_figures()) - set(figures):
         for file in (folder / "figures").glob(f"{stale}.*"):
             file.unlink()
+
+
+def _animate(task: Task, _folder: Path, config: Config) -> None:
+    """Animate the focus scan of a run."""
+    from octsim.base.named import named
+    from octsim.datasets.files import read
+    from octsim.datasets.gallery import ANIMATION
+
+    sources = (read(Path(task.input[name]), name, config) for name in ANIMATION.of)
+    named(ANIMATION.draw)(*sources, Path(next(iter(task.output.values()))))
 
 
 def _report(task: Task, folder: Path, config: Config) -> None:

@@ -21,7 +21,7 @@ from octsim.base.say import WORDS
 from octsim.cli.stopped import COMMAND, on_signals, say_stopped, stops_at_signals
 
 _FORMS = (".yaml", ".yml", ".json")
-_MORE_TARGETS = ("all", "figures", "archive")
+_MORE_TARGETS = ("all", "figures", "animation", "archive")
 _LONGEST = 1.5  # s that snakemake may take to end; it ends at once, unless it is just being loaded
 _ON_A_CLUSTER = 60.0  # s, as jobs that wait there are cancelled
 _PROFILES = ("--workflow-profile", "--profile", "--executor")

@@ -92,6 +92,8 @@ _RUN = (
                    "a spectrum on its way to its Fourier transform"),
             Figure("scene", "octsim.figures.scene:scene_figure",
                    "the scene to scale, with rays of its strongest light paths"),
+            Figure("aperture", "octsim.figures.aperture:aperture_figure",
+                   "the aperture, each ray coloured by the light path that it comes back on"),
         ),
     ),
     Stage(

@@ -10,6 +10,12 @@ from octsim.datasets.stage import Figure
 
 SPIRAL = Figure("figure_1", "octsim.figures.beam:figure_1", "spiral on which rays start")
 """The figure of a run that needs no dataset."""
+ANIMATION = Figure(
+    "animation", "octsim.figures.animation:animate",
+    "the focus scan: the scene with its rays, focus after focus, and the intensity",
+    of=("focus_scan",),
+)  # fmt: skip
+"""Of a run, made when it is asked for: ``figures/animation.gif``."""
 CAPTIONS: Mapping[str, str] = {
     one.name: one.caption for one in (SPIRAL, *(f for row in CATALOG.values() for f in row.figures))
 }

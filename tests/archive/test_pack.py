@@ -379,6 +379,17 @@ def test_the_metadata_is_an_ro_crate(folder: Path, tmp_path: Path) -> None:
     assert ROCrate(out).root_dataset["name"] == ABOUT["title"]  # other tools read it
 
 
+def test_an_animation_goes_with_the_scan_that_it_is_of(folder: Path, tmp_path: Path) -> None:
+    (folder / "figures" / "animation.gif").write_bytes(b"GIF89a")
+    packed = pack(folder, config_of(folder))
+    assert not [said for said in packed.remarks if "animation" in said]
+    unpack(packed.file, tmp_path / "out")
+    told = json.loads((tmp_path / "out" / "ro-crate-metadata.json").read_text())
+    (moving,) = (one for one in told["@graph"] if one["@id"] == "figures/animation.gif")
+    assert moving["encodingFormat"] == "image/gif"
+    assert moving["isBasedOn"] == [{"@id": "focus_scan.nc"}]
+
+
 def test_no_file_is_packed_but_those_of_the_run(folder: Path, tmp_path: Path) -> None:
     """An expansion holds its series; what its config names as one may be anybody's."""
     secret = tmp_path / "secret"

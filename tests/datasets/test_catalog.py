@@ -16,7 +16,7 @@ OF_THE_CALIBRATION = {"expansion", "action_potential"}
 # of no dataset, and of a dataset over a grid
 FIGURES_OF_THEIR_OWN = {
     "figure_1": "octsim.figures.beam", "grid": "octsim.figures.grid",
-    "scene": "octsim.figures.scene",
+    "scene": "octsim.figures.scene", "aperture": "octsim.figures.aperture",
 }  # fmt: skip
 
 

@@ -122,6 +122,7 @@ LABELS = {
     "figure_11": {"Diameter of the cylinder (µm)", "Phase, unwrapped (rad)"},
     "figure_12": {"Diameter of the cylinder (µm)", "Phase slope (mrad/nm)"},
     "scene": {"x (µm)", "height (µm)"},
+    "aperture": {"x (radius of the aperture)", "y (radius of the aperture)"},
     "paths": {
         "Diameter of the cylinder (µm)",
         "Field amplitude",

@@ -17,7 +17,7 @@ from octsim.datasets.catalog import TARGETS
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
-RULES = {"all", "figures", "report", "archive", *TARGETS}
+RULES = {"all", "figures", "animation", "report", "archive", *TARGETS}
 FILES = re.compile(r"results/[\w/-]+\.\w+")
 """A file that a rule makes may be asked for by its name."""
 

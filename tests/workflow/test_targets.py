@@ -22,3 +22,10 @@ def test_a_report_is_asked_for_by_its_name_and_is_no_part_of_a_run(
 ) -> None:
     assert "Write the report" in planned("report")
     assert "Write the report" not in planned()
+
+
+def test_an_animation_is_asked_for_by_its_name_and_is_no_part_of_a_run(
+    planned: Callable[..., str],
+) -> None:
+    assert "Animate the focus scan" in planned("animation")
+    assert "Animate the focus scan" not in planned()
