@@ -44,7 +44,7 @@ from octsim.config.models import Config
 from octsim.config.told import told
 from octsim.datasets.catalog import CATALOG, TARGETS, jobs
 from octsim.datasets.code import code_of, figures_code
-from octsim.datasets.gallery import ANIMATION, CAPTIONS, drawn_with, run_figures
+from octsim.datasets.gallery import ANIMATION, CAPTIONS, FORMS, drawn_with, run_figures
 from octsim.datasets.keys import inputs_of, jobs_of, keys_read, stages_of
 from octsim.datasets.stage import Stage
 from octsim.stages.cost_estimate import check_budget, expected
@@ -167,10 +167,10 @@ def shares(stage: str) -> list[str]:
 
 def drawn(figure: str, category: str) -> list[str]:
     """Return the files of a figure, the first marked for snakemake's own report."""
-    file = f"{FOLDER}/figures/{figure}"
+    first, *others = (f"{FOLDER}/figures/{figure}.{form}" for form in FORMS)
     said = {"figure": figure, "shows": CAPTIONS[figure]}
     told = "workflow/report/figure.rst"
-    return [report(f"{file}.png", caption=told, category=category, labels=said), f"{file}.svg"]
+    return [report(first, caption=told, category=category, labels=said), *others]
 
 
 def threads_of(rows: tuple[Stage, ...]) -> int:
@@ -251,7 +251,7 @@ onerror:
 rule all:
     input:
         [f"{FOLDER}/{stage}.nc" for stage in stages_of(run)],
-        [f"{FOLDER}/figures/{name}.{form}" for name in FIGURES for form in ("png", "svg")],
+        [f"{FOLDER}/figures/{name}.{form}" for name in FIGURES for form in FORMS],
 
 
 rule share:

@@ -60,7 +60,7 @@ class Checkout:
         return {
             str(path.relative_to(folder)): path.read_bytes()
             for path in sorted(folder.rglob("*"))
-            if path.suffix in {".nc", ".png", ".svg"}
+            if path.suffix in {".nc", ".png", ".svg", ".pdf", ".txt"}
         }
 
 

@@ -18,7 +18,7 @@ from octsim.config.archive import ArchiveConfig
 from octsim.config.models import Config
 from octsim.datasets.catalog import TARGETS
 from octsim.datasets.files import guarded
-from octsim.datasets.gallery import ANIMATION, CAPTIONS, drawn_with, figures_of
+from octsim.datasets.gallery import ANIMATION, CAPTIONS, FORMS, drawn_with, figures_of
 from octsim.datasets.keys import stages_of
 
 CONFIG = "config.yaml"
@@ -26,7 +26,6 @@ ENVIRONMENT = "environment.json"
 README = "README.md"
 METADATA = "ro-crate-metadata.json"
 ORCID = "https://orcid.org/"
-_FORMS = {".png": "image/png", ".svg": "image/svg+xml"}
 _DESCRIPTION = (
     "Simulated optical coherence tomography of a neuron: by ray tracing, from a microscope "
     "objective and a cylinder on a glass slide to the phase slope, the change of phase with "
@@ -118,11 +117,11 @@ def _figures(run: Run, config: Config) -> list[Item]:
     stages = _stages_of_figures(run, config)
     return [
         Item(
-            f"{FIGURES}/{file.name}", CAPTIONS[file.stem], file, _FORMS[file.suffix],
+            f"{FIGURES}/{file.name}", CAPTIONS[file.stem], file, FORMS[file.suffix[1:]],
             stages=tuple(stage for stage in stages[file.stem] if stage in run.datasets),
         )
         for file in run.figures
-        if file.stem in stages and file.suffix in _FORMS
+        if file.stem in stages and file.suffix[1:] in FORMS
     ]  # fmt: skip
 
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from octsim.archive.recorded import Recorded
 
-_FORMS = (".png", ".svg")
+_FORMS = (".png", ".svg", ".pdf")
 _STATUS = (
     "Exit status: 0 if every number is within the tolerance; 1 if one is beyond it, or not in both "
     "(another config or version by itself is no difference); 2 if the arguments are wrong or "
@@ -32,7 +32,7 @@ def add(commands: Any) -> None:
     drawn = parser.add_mutually_exclusive_group()
     drawn.add_argument(
         "--figure", type=_figure, metavar="FILE",
-        help="where both phase slopes over the diameter are drawn, PNG or SVG "
+        help="where both phase slopes over the diameter are drawn, PNG, SVG or PDF "
         "(default: compare_<A>_<B>.png here, of runs that have one)",
     )  # fmt: skip
     drawn.add_argument("--no-figure", action="store_true", help="draw none")
@@ -59,7 +59,7 @@ def _tolerance(text: str) -> float:
 def _figure(text: str) -> Path:
     path = Path(text)
     if path.suffix not in _FORMS:
-        raise argparse.ArgumentTypeError(f"{text} given; its name ends with .png or .svg")
+        raise argparse.ArgumentTypeError(f"{text} given; its name ends with .png, .svg or .pdf")
     return path
 
 

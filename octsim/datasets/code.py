@@ -1,5 +1,6 @@
 """The code that a dataset or a figure follows from, as digests: an edit of it makes them anew."""
 
+import hashlib
 from collections.abc import Iterator
 
 from octsim.base.provenance import source_digest
@@ -28,9 +29,11 @@ def code_of(stage: str, config: Config) -> str:
 
 
 def figures_code(*figures: Figure) -> str:
-    """Digest the sources that draw some figures."""
+    """Digest the sources that draw some figures, and what their captions say."""
     modules = dict.fromkeys(figure.draw.partition(":")[0] for figure in figures)
-    return source_digest("octsim.figures.draw", *modules, without=NO_RESULT)
+    code = source_digest("octsim.figures.draw", *modules, without=NO_RESULT)
+    captions = "\n".join(figure.caption for figure in figures)
+    return f"{code} {hashlib.sha256(captions.encode()).hexdigest()[:12]}"
 
 
 def _schemes(stage: str, config: Config) -> Iterator[str]:

@@ -20,6 +20,13 @@ CAPTIONS: Mapping[str, str] = {
     one.name: one.caption for one in (SPIRAL, *(f for row in CATALOG.values() for f in row.figures))
 }
 """What each figure shows."""
+FORMS: Mapping[str, str] = {
+    "png": "image/png",
+    "svg": "image/svg+xml",
+    "pdf": "application/pdf",
+    "txt": "text/plain",
+}
+"""Endings of the files of each figure, and their media types; the text is its caption."""
 
 
 class Drawn(NamedTuple):

@@ -31,13 +31,14 @@ def action_potential_figure(fired: xr.Dataset, table: xr.Dataset) -> Figure:
 def _draw_errors(axes: Axes, fired: xr.Dataset) -> None:
     """Draw what is recovered less what is true, in pm."""
     time, truth = TIME_UNIT * fired["time"].values, fired["true_expansion"].values
-    for error, colour, text in (
-        (THESIS_OSCILLATION * truth, ORANGE, "± oscillation of the thesis's slope"),
-        (standard_error(fired), SKY, "± stated error"),
+    for error, colour, hatch, text in (
+        (THESIS_OSCILLATION * truth, ORANGE, "////", "± oscillation of the thesis's slope"),
+        (standard_error(fired), SKY, "", "± stated error"),
     ):
         axes.fill_between(
-            time, -1e3 * error, 1e3 * error, color=colour, alpha=0.35, linewidth=0, label=text
-        )
+            time, -1e3 * error, 1e3 * error, color=colour, alpha=0.35, linewidth=0, label=text,
+            hatch=hatch,
+        )  # fmt: skip
     for name, colour, marker, text in (
         ("fft_expansion", VERMILION, "x", "the thesis's way"),
         ("expansion", BLUE, ".", "recovered"),

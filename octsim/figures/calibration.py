@@ -5,6 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from octsim.figures.marks import mark_points
 from octsim.figures.style import (
     BLACK,
     BLUE,
@@ -20,12 +21,12 @@ from octsim.figures.style import (
 from octsim.studies.calibration.told import doubts
 
 _SLOPES = (
-    # variable, colour, line, what the legend says
-    ("fft_fixed_focus_phase_slope", SKY, "-", "fft, focus held"),
-    ("light_paths_phase_slope", PURPLE, "-", "by rays (light paths), focus held"),
-    ("maxwell_phase_slope", GREEN, "-", "by Maxwell's equations, focus held"),
-    ("following_phase_slope", ORANGE, "--", "focus follows the diameter"),
-    ("fft_following_phase_slope", VERMILION, ":", "fft, focus follows (the thesis)"),
+    # variable, colour, line, marker, what the legend says
+    ("fft_fixed_focus_phase_slope", SKY, "-", "s", "fft, focus held"),
+    ("light_paths_phase_slope", PURPLE, "-", "v", "by rays (light paths), focus held"),
+    ("maxwell_phase_slope", GREEN, "-", "o", "by Maxwell's equations, focus held"),
+    ("following_phase_slope", ORANGE, "--", "", "focus follows the diameter"),
+    ("fft_following_phase_slope", VERMILION, ":", "", "fft, focus follows (the thesis)"),
 )
 _MARKERS = "osv^D"
 _SHOWN = 5  # of the parameters, those that count most
@@ -50,16 +51,21 @@ def _draw_slopes(axes: Axes, table: xr.Dataset) -> None:
         label="its standard error",
     )  # fmt: skip
     axes.plot(diameter, slope, color=BLUE, linewidth=2, label="focus held: the calibration")
-    for name, colour, line, text in _SLOPES:
+    for name, colour, line, marker, text in _SLOPES:
         if table[name].isnull().all() or np.allclose(table[name], slope, rtol=1e-4):
             continue  # not solved, or the calibration itself
-        axes.plot(diameter, table[name], color=colour, linestyle=line, label=text)
+        axes.plot(
+            diameter, table[name], color=colour, linestyle=line, marker=marker, markersize=4,
+            markevery=5, label=text,
+        )  # fmt: skip
+    for status in ("accuracy_status", "model_status"):
+        mark_points(axes, diameter, slope, table.get(status))
     predicted = float(table["predicted_phase_slope"])
     axes.axhline(predicted, color=BLACK, linestyle="-.", label=f"prediction {predicted:.2f}")
     axes.set_xlabel(label(diameter, "diameter at rest"))
     axes.set_ylabel(label(slope, "phase slope"))
     low, high = axes.get_ylim()
-    axes.set_ylim(low - 0.4 * (high - low), high)  # room for the legend
+    axes.set_ylim(low - 0.5 * (high - low), high)  # room for the legend
     axes.legend(fontsize=8, ncols=2, loc="lower center")
 
 

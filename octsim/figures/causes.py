@@ -1,12 +1,14 @@
 """Why the phase slope scatters, and what makes its spike."""
 
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from octsim.figures.marks import mark_missing
 from octsim.figures.style import (
     BLACK,
     BLUE,
@@ -22,6 +24,10 @@ from octsim.figures.style import (
 _COLOURS: Mapping[str, str] = {
     "rays": SKY, "step": PURPLE, "centre": VERMILION, "envelope": ORANGE, "paths": BLACK,
     "image": BLUE, "bins": GREEN,
+}  # fmt: skip
+_DASHES: Mapping[str, Any] = {
+    "rays": (0, (1, 2)), "step": (0, (8, 2)), "centre": "-", "envelope": "--", "paths": "-",
+    "image": ":", "bins": "-.",
 }  # fmt: skip
 _LINES = (("s", VERMILION), ("o", ORANGE), ("^", BLUE), ("x", SKY), ("+", BLACK))
 _SHOWN = (0, 20, 40, 52, 56, 80)  # of the spectra around the spike
@@ -96,7 +102,10 @@ def causes_figure(found: xr.Dataset) -> Figure:
     for name, colour in _COLOURS.items():
         if abs(float(found["cause_share"].sel(cause=name))) > 0.01:
             curve = found["cause_phase_slope"].sel(cause=name)
-            part.plot(found["diameter"], curve, color=colour, label=name, linewidth=1.2)
+            part.plot(
+                found["diameter"], curve, color=colour, linestyle=_DASHES[name], label=name,
+                linewidth=1.2,
+            )  # fmt: skip
     part.set_xlabel(label(found["diameter"]))
     part.set_ylabel(label(found["cause_phase_slope"], "part of the slope by its cause"))
     part.legend(ncols=2, fontsize=8)
@@ -122,9 +131,13 @@ def _slopes(axes: Axes, found: xr.Dataset) -> None:
         place, found["phase_slope_without"].sel(cause="centre"), color=VERMILION, linewidth=1,
         linestyle=":", label="the true level subtracted",
     )  # fmt: skip
-    axes.plot(
-        place, found["beat_phase_slope"], color=BLACK, linestyle="--", label="the beat's own phase"
-    )
+    beat, error = found["beat_phase_slope"], found["beat_phase_slope_error"]
+    axes.fill_between(
+        place, beat - error, beat + error, color=BLACK, alpha=0.25, linewidth=0,
+        label="± its estimated error",
+    )  # fmt: skip
+    axes.plot(place, beat, color=BLACK, linestyle="--", label="the beat's own phase")
+    mark_missing(axes, place, found["phase_slope"])
     axes.axhline(
         float(found["predicted_phase_slope"]), color=GREEN, linestyle="-.", linewidth=1,
         label="prediction",

@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from octsim.figures.marks import mark_points
 from octsim.figures.style import BLUE, ORANGE, label
 
 # apart in lightness too, and by their markers
@@ -42,6 +43,7 @@ def figure_compare(slopes: tuple[xr.Dataset, xr.Dataset], names: tuple[str, str]
             predicted, color=colour, linestyle=_PREDICTIONS[number],
             label=f"prediction {predicted:.2f} mrad/nm",
         )  # fmt: skip
+        mark_points(axes, diameter, slope, one.get("fringe_status"))
         shown += [slope.values, ideal.values]
     values = np.concatenate(shown)
     finite = values[np.isfinite(values)]

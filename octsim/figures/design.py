@@ -1,5 +1,6 @@
 """The search for the best instrument: the map of its error, and what makes it."""
 
+import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -29,17 +30,18 @@ def _draw_map(figure: Figure, axes: Axes, table: xr.Dataset) -> None:
     places = np.arange(table.sizes["fill"])
     # a fill is one of a few; a colour stands for orders of magnitude
     mesh = axes.pcolormesh(
-        table["focus_offset"], places, np.log10(least), shading="nearest", cmap="viridis_r"
-    )
+        table["focus_offset"], places, np.log10(least), shading="nearest",
+        cmap=mpl.colormaps["viridis_r"].with_extremes(bad="0.85"),
+    )  # fmt: skip
     bar = figure.colorbar(mesh, ax=axes)
     bar.set_label("log₁₀ of the least standard error (nm)")
     for row, values in enumerate(least.values):
         for focus, value in zip(table["focus_offset"].values, values, strict=True):
-            if np.isfinite(value):
-                axes.text(
-                    focus, row, f"{value:.2g}", ha="center", va="center", fontsize=7,
-                    bbox={"facecolor": "white", "alpha": 0.6, "linewidth": 0, "pad": 1},
-                )  # fmt: skip
+            text = f"{value:.2g}" if np.isfinite(value) else "none"
+            axes.text(
+                focus, row, text, ha="center", va="center", fontsize=7,
+                bbox={"facecolor": "white", "alpha": 0.6, "linewidth": 0, "pad": 1},
+            )  # fmt: skip
     axes.set_yticks(places, [f"{fill:g}" for fill in table["fill"].values])
     axes.set_xlabel(label(table["focus_offset"], "focus above the law's"))
     axes.set_ylabel("Fill of the pupil")

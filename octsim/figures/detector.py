@@ -13,6 +13,7 @@ from octsim.studies.detector.recommended import chosen, own
 _COLOURS = {
     "parabolic": BLUE, "top_hat": VERMILION, "cosine": ORANGE, "gaussian": GREEN, "fibre": PURPLE
 }  # fmt: skip
+_DASHES = {"top_hat": "-", "parabolic": "--", "gaussian": ":"}
 _MARKERS = {"parabolic": "o", "top_hat": "s", "cosine": "^", "gaussian": "D", "fibre": "P"}
 _LETTERS = 190
 _APART = 0.15
@@ -91,9 +92,9 @@ def _slopes(axes: Axes, table: xr.Dataset) -> None:
     """Draw local slopes by counted rays at the run's own radius."""
     radius = own(table).radius
     slopes = table["ray_phase_slope"].sel(ray_scheme="vogel", detector_radius=radius)
-    for falloff in ("top_hat", "parabolic", "gaussian"):
+    for falloff, line in _DASHES.items():
         axes.plot(
-            table["diameter"], slopes.sel(falloff=falloff), color=_COLOURS[falloff],
+            table["diameter"], slopes.sel(falloff=falloff), color=_COLOURS[falloff], linestyle=line,
             label=falloff.replace("_", " "), linewidth=1.0,
         )  # fmt: skip
     axes.set_xlabel(label(table["diameter"], "diameter"))

@@ -3,6 +3,7 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
+from octsim.figures.marks import mark_clipped
 from octsim.figures.style import BLUE, GREEN, ORANGE, PURPLE, SKY, label, title
 
 _LOOKS = ((ORANGE, "-"), (PURPLE, "--"), (SKY, ":"), (BLUE, "-"), (GREEN, "-."))
@@ -19,10 +20,11 @@ def diffraction_figure(table: xr.Dataset) -> Figure:
         light.semilogy(one["focus"], shown, color=colour, linestyle=line, label=name)
         slope.plot(one["diameter"], one["phase_slope"], color=colour, linestyle=line)
     light.set_ylim(1e-7, 2)
+    mark_clipped(light)
     light.set_xlabel(label(table["focus"]))
     light.set_ylabel("Mean intensity (highest = 1)")
     light.set_title(title(table, "Diffraction limit by defocus"))
     slope.set_xlabel(label(table["diameter"]))
     slope.set_ylabel(label(table["phase_slope"], "phase slope"))
-    figure.legend(loc="outside lower center", ncols=2)
+    figure.legend(loc="outside lower center", ncols=2, fontsize=9)
     return figure

@@ -8,15 +8,15 @@ from pathlib import Path
 import xarray as xr
 from matplotlib.figure import Figure
 
+from octsim.base.files import whole
 from octsim.base.named import called, named
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.datasets.files import read
-from octsim.datasets.gallery import Drawn
+from octsim.datasets.gallery import FORMS, Drawn
+from octsim.figures.caption import caption_of
 from octsim.figures.style import look, save
 
-FORMS = ("png", "svg")
-"""Each figure is saved in all of these."""
 _read: dict[str, xr.Dataset] = {}  # a forked process has what was read
 
 
@@ -37,7 +37,8 @@ def draw(
     datasets : mapping
         Files of the datasets that they are drawn from, by their names.
     folder : Path
-        Where ``<name>.png`` and ``<name>.svg`` go.
+        Where they go, each in all forms: ``<name>.png`` and others, and its caption,
+        ``<name>.txt``.
     config : Config
         The config that the datasets follow from.
     threads : int
@@ -74,4 +75,9 @@ def _draw(task: tuple[Drawn, Path, Config]) -> None:
     with look():
         figure = figure_of(one, _read, config.processing)
         for form in FORMS:
-            save(figure, folder / f"{one.figure.name}.{form}")
+            file = folder / f"{one.figure.name}.{form}"
+            if form == "txt":
+                with whole(file) as temporary:
+                    temporary.write_text(caption_of(one, figure, config), encoding="utf-8")
+            else:
+                save(figure, file)

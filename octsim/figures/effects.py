@@ -9,12 +9,15 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from octsim.figures.marks import mark_points
 from octsim.figures.style import BLACK, BLUE, GREEN, ORANGE, VERMILION, title
 from octsim.studies.effects.variants import EffectStatus
 
 _LEAST = 1e-3  # % of the slope, where the axis begins
 _LETTERS = 150
 _GREY = "0.7"
+_HATCHES = {VERMILION: "////", GREEN: "...."}
+"""Tell bars apart where their colours can't be seen."""
 _MISSING = {
     EffectStatus.NOT_BY_THIS_SCHEME: "not by this scheme",
     EffectStatus.NOT_IN_THIS_SCENE: "not in this scene",
@@ -80,7 +83,8 @@ def _slopes(
               color=ORANGE)  # fmt: skip
     axes.axvline(100 * table.attrs["mean_tolerance"], color=BLACK, linewidth=0.8)
     axes.axvline(100 * table.attrs["local_tolerance"], color=ORANGE, linewidth=0.8, linestyle="--")
-    axes.set_xlabel("Change of the phase slope (%)")
+    mark_points(axes, np.maximum(change, _LEAST), place, shown["accuracy_status"])
+    axes.set_xlabel(f"Change of the phase slope (%); what is less stands at {_LEAST:g} %")
 
 
 def _pairs(axes: Axes, table: xr.Dataset, below: NDArray[np.int64]) -> None:
@@ -95,7 +99,11 @@ def _pairs(axes: Axes, table: xr.Dataset, below: NDArray[np.int64]) -> None:
 def _bars(
     axes: Axes, place: NDArray[np.int64], values: NDArray[np.float64], colours: list[str]
 ) -> None:
-    axes.barh(place, values, color=colours, height=0.7, log=True)
+    hatches = [_HATCHES.get(colour, "") for colour in colours]
+    axes.barh(
+        place, values, color=colours, height=0.7, log=True, hatch=hatches, edgecolor="white",
+        linewidth=0,
+    )  # fmt: skip
 
 
 def _pair_name(table: xr.Dataset, number: int) -> str:
@@ -108,19 +116,26 @@ def _legend(figure: Figure, table: xr.Dataset) -> None:
     marks = {
         "noise of the mean": ("|", BLACK), "largest at a diameter": ("o", ORANGE)
     } | ({"sum of a pair's parts": ("D", BLACK)} if table.sizes["pair"] else {})  # fmt: skip
-    drawn = [
-        slope.plot([], [], mark, color=colour, markersize=5, label=name,
-                   markerfacecolor="none" if mark == "o" else colour)[0]
-        for name, (mark, colour) in marks.items()
-    ]  # fmt: skip
+    for name, (mark, colour) in marks.items():
+        slope.plot(
+            [], [], mark, color=colour, markersize=5, label=name,
+            markerfacecolor="none" if mark == "o" else colour,
+        )  # fmt: skip
+    drawn = slope.get_legend_handles_labels()[0]
     mean, local = (f"{100 * table.attrs[f'{one}_tolerance']:g} %" for one in ("mean", "local"))
     patches = [
-        Patch(color=VERMILION, label=f"needed: above {mean} (line), or {local} anywhere (dashed)"),
-        Patch(color=BLUE, label="may stay off"),
-        Patch(color=_GREY, label="not told from the noise"),
-        *([Patch(color=GREEN, label="a pair")] if table.sizes["pair"] else []),
+        _patch(VERMILION, f"needed: above {mean} (line), or {local} anywhere (dashed)"),
+        _patch(BLUE, "may stay off"),
+        _patch(_GREY, "not told from the noise"),
+        *([_patch(GREEN, "a pair")] if table.sizes["pair"] else []),
     ]
     figure.legend(handles=[*patches, *drawn], loc="outside lower center", ncols=3, fontsize=8)
+
+
+def _patch(colour: str, text: str) -> Patch:
+    return Patch(
+        facecolor=colour, edgecolor="white", linewidth=0, hatch=_HATCHES.get(colour, ""), label=text
+    )
 
 
 def _captions(figure: Figure, table: xr.Dataset) -> None:

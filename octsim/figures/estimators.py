@@ -1,6 +1,7 @@
 """Estimators compared: their slopes, how these scatter, and what noise leaves of the diameter."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -19,14 +20,14 @@ from octsim.figures.style import (
     title,
 )
 
-_DRAWN: Mapping[str, tuple[str, str]] = {
-    # estimator: colour, marker
-    "fft": (ORANGE, "s"),
-    "fringe": (PURPLE, "v"),
-    "sinusoid_plain": (SKY, "^"),
-    "sinusoid_fitted_depth": (BLUE, "o"),
-    "sinusoid_common_envelope": (VERMILION, "D"),
-    "maximum_likelihood": (GREEN, "x"),
+_DRAWN: Mapping[str, tuple[str, str, Any]] = {
+    # estimator: colour, marker, line
+    "fft": (ORANGE, "s", "-"),
+    "fringe": (PURPLE, "v", (0, (3, 1, 1, 1))),
+    "sinusoid_plain": (SKY, "^", (0, (8, 2))),
+    "sinusoid_fitted_depth": (BLUE, "o", "-."),
+    "sinusoid_common_envelope": (VERMILION, "D", (0, (5, 1, 1, 1, 1, 1))),
+    "maximum_likelihood": (GREEN, "x", ":"),
 }
 
 
@@ -39,17 +40,17 @@ def estimators_figure(compared: xr.Dataset) -> Figure:
     _resolution(noise, compared)
     figure.suptitle(title(compared, "Estimators of the phase"), fontsize=11)
     handles, names = noise.get_legend_handles_labels()
-    figure.legend(handles, names, loc="outside lower center", ncols=4, fontsize=8)
+    figure.legend(handles, names, loc="outside lower center", ncols=4, fontsize=8, handlelength=4)
     return figure
 
 
 def _slopes(axes: Axes, compared: xr.Dataset) -> None:
     """Draw the slopes by counted rays, and that of the light's own phase."""
     diameter = compared["diameter"]
-    for name, (colour, _) in _DRAWN.items():
+    for name, (colour, _, line) in _DRAWN.items():
         slope = compared["phase_slope"].sel(estimator=name)
         if np.isfinite(slope).any():
-            axes.plot(diameter, slope, color=colour, linewidth=1.0)
+            axes.plot(diameter, slope, color=colour, linestyle=line, linewidth=1.0)
     axes.plot(diameter, compared["path_phase_slope"], color=BLACK, linestyle="--", linewidth=1.0)
     axes.set_xlabel(label(diameter))
     axes.set_ylabel(label(compared["phase_slope"], "phase slope, by counted rays"))
@@ -66,7 +67,8 @@ def _scatter(axes: Axes, compared: xr.Dataset) -> None:
         (0.2, "converged_scatter", BLUE, "light paths"),
     ):
         axes.barh(place + off, np.maximum(shown[name], least), 0.4, color=colour, label=text)
-    axes.set_yticks(place, [str(one) for one in shown["estimator"].values], fontsize=7)
+    names = [str(one).replace("_", " ") for one in shown["estimator"].values]
+    axes.set_yticks(place, names, fontsize=7)
     axes.invert_yaxis()
     axes.set_xscale("log")
     axes.set_xlim(left=least)
@@ -77,11 +79,11 @@ def _scatter(axes: Axes, compared: xr.Dataset) -> None:
 def _resolution(axes: Axes, compared: xr.Dataset) -> None:
     """Draw the error of the diameter under shot noise over the ratio, and its bound."""
     picometres = 1e6  # per µm
-    for name, (colour, marker) in _DRAWN.items():
+    for name, (colour, marker, line) in _DRAWN.items():
         error = picometres * compared["resolution"].sel(estimator=name)
         axes.plot(
-            compared["snr"], error, color=colour, marker=marker, markersize=5, linewidth=1.0,
-            label=name,
+            compared["snr"], error, color=colour, marker=marker, markersize=5, linestyle=line,
+            linewidth=1.0, label=name.replace("_", " "),
         )  # fmt: skip
     axes.plot(
         compared["snr"], picometres * compared["bound"], color=BLACK, linestyle="--",

@@ -7,7 +7,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from octsim.figures.envelope import band, extremes
-from octsim.figures.style import BLUE, ORANGE, SKY, title
+from octsim.figures.marks import mark_doubtful
+from octsim.figures.style import BLUE, SKY, title
 from octsim.phase.rest_error import ErrorStatus
 from octsim.studies.responses.separability import Separability
 
@@ -54,14 +55,8 @@ def expansion_figure(found: xr.Dataset) -> Figure:
     draw_expansion(axes, found)
     if "outlier" in found:
         alone = found.isel(time=found["outlier"].values > 0)
-        axes.plot(
-            TIME_UNIT * alone["time"].values,
-            alone["expansion"].values,
-            "o",
-            color=ORANGE,
-            fillstyle="none",
-            label="outliers, alone among others",
-        )
+        time, change = TIME_UNIT * alone["time"].values, alone["expansion"].values
+        mark_doubtful(axes, time, change, "outliers, alone among others")
     status = ErrorStatus(int(found.get("error_status", ErrorStatus.SCATTER)))
     if status in FROM:
         axes.plot([], [], " ", label=f"statistical error {FROM[status]}")

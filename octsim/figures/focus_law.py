@@ -5,6 +5,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from octsim.config.models import FocusLine
+from octsim.figures.marks import mark_doubtful
 from octsim.figures.style import BLACK, BLUE, VERMILION, label, tell, title
 from octsim.stages.centres import CentreUse, doubts
 from octsim.stages.focus_law import LawScheme
@@ -26,15 +27,15 @@ def figure_7(fits: xr.Dataset, law: xr.Dataset) -> Figure:
     points = {"fmt": "o", "color": BLUE, "capsize": 3, "markersize": 4}
     foci.errorbar(diameter, centre, yerr=errors, label="centre ± standard error", **points)
     use = law["centre_use"].values
-    for left_out, marker, text in (
-        (CentreUse.NO_CENTRE, "x", "no peak: the brightest focus"),
-        (CentreUse.OFF_THE_LINE, "s", "left out of the law"),
-    ):
-        at = use == left_out
-        if at.any():
-            height = centre.fillna(law["brightest_focus"]).values
-            look = {"linestyle": "", "color": VERMILION, "fillstyle": "none", "zorder": 3}
-            foci.plot(diameter.values[at], height[at], marker, label=text, **look)
+    at = use == CentreUse.NO_CENTRE
+    if at.any():
+        brightest = law["brightest_focus"].values[at]
+        foci.plot(
+            diameter.values[at], brightest, "x", color=VERMILION, zorder=3,
+            label="no peak: the brightest focus",
+        )  # fmt: skip
+    at = use == CentreUse.OFF_THE_LINE
+    mark_doubtful(foci, diameter.values[at], centre.values[at], "off the line, left out of the law")
     for rest in rests:
         fitted = line.at(diameter.values)
         sign = "+" if line.intercept >= 0 else "−"

@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from octsim.figures.marks import mark_points
 from octsim.figures.phase_slope import draw_components
 from octsim.figures.spectra import DIAMETER
 from octsim.figures.style import component_colour, label, tell_doubts, title
@@ -59,9 +60,10 @@ def figure_10(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
     figure = Figure()
     axes = figure.subplots()
     diameter = fourier["diameter"]
-    draw_components(
+    drawn = draw_components(
         axes, diameter.values, slopes["strongest_component"].values, fourier["magnitude"]
     )
+    mark_points(axes, diameter, drawn, slopes.get("fringe_status"))
     axes.set_xlabel(label(diameter))
     axes.set_ylabel(label(fourier["magnitude"], "magnitude (sum over the samples)"))
     axes.set_title(title(slopes, "Magnitude (solid where strongest)"))
@@ -76,7 +78,8 @@ def figure_11(fourier: xr.Dataset, slopes: xr.Dataset) -> Figure:
     axes = figure.subplots()
     diameter = fourier["diameter"]
     unwrapped = fourier["phase"].copy(data=_unwrapped(fourier["phase"].values))
-    draw_components(axes, diameter.values, slopes["strongest_component"].values, unwrapped)
+    drawn = draw_components(axes, diameter.values, slopes["strongest_component"].values, unwrapped)
+    mark_points(axes, diameter, drawn, slopes.get("fringe_status"))
     axes.set_xlabel(label(diameter))
     axes.set_ylabel(label(fourier["phase"], "phase, unwrapped"))
     axes.set_title(title(slopes, "Phase (solid where strongest)"))

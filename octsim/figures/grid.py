@@ -2,10 +2,13 @@
 
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
+from octsim.figures.marks import doubtful, mark_doubtful, mark_missing
 from octsim.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, label, title
 
 _MOST_LINES = 8
@@ -33,12 +36,18 @@ def figure_grid(slopes: xr.Dataset) -> Figure:
         for name in panels
     }
     count = len(rows["mean_phase_slope"])
+    amiss = _amiss(slopes, [*others, along]).reshape(count, -1)
     figure = Figure(figsize=(6.4, 6.4))
     axes = figure.subplots(2, sharex=True)
     x, names = _positions(slopes, along)
     for panel, (name, text) in zip(axes, panels.items(), strict=True):
         if count > _MOST_LINES:
-            image = panel.pcolormesh(x, np.arange(count), rows[name], shading="nearest")
+            colours = mpl.colormaps["viridis"].with_extremes(bad="0.85")
+            image = panel.pcolormesh(
+                x, np.arange(count), rows[name], shading="nearest", cmap=colours
+            )
+            if not np.isfinite(rows[name]).all():
+                panel.set_title("grey: no value", fontsize=8, loc="right")
             figure.colorbar(image, ax=panel, label=label(slopes[name], text))
             panel.set_ylabel("Combination of " + ", ".join(others).replace("_", " "))
             panel.grid(visible=False)
@@ -49,6 +58,8 @@ def figure_grid(slopes: xr.Dataset) -> Figure:
                 linestyle="-" if along in _numeric(slopes) else "none",
                 label=_told(slopes, others, number),
             )  # fmt: skip
+            mark_missing(panel, x, values)
+            mark_doubtful(panel, x[amiss[number]], values[amiss[number]], "some of the diameters")
         panel.set_ylabel(label(slopes[name], text))
     if names:
         axes[-1].set_xticks(x, names, rotation=30, ha="right")
@@ -59,6 +70,15 @@ def figure_grid(slopes: xr.Dataset) -> Figure:
         columns = 2 if max(map(len, names)) <= _MOST_LETTERS // 2 else 1
         figure.legend(lines, names, loc="outside lower center", ncols=columns, fontsize=8)
     return figure
+
+
+def _amiss(slopes: xr.Dataset, order: list[str]) -> NDArray[np.bool_]:
+    """Return at which combinations the slope is doubtful, or not known, at some diameters."""
+    if "fringe_status" not in slopes:  # files of 0.1.0 don't have it
+        return np.zeros([slopes.sizes[dim] for dim in order], bool)
+    status = slopes["fringe_status"]
+    some = status.copy(data=doubtful(status)).any("diameter")
+    return np.asarray(some.broadcast_like(slopes["mean_phase_slope"]).transpose(*order).values)
 
 
 def _numeric(slopes: xr.Dataset) -> set[str]:

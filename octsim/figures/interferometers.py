@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 from octsim.figures.style import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, label, title
 
 _LOOKS = (
-    (GREEN, "-"), (BLUE, "-"), (ORANGE, "--"), (SKY, "-"), (PURPLE, "--"), (VERMILION, "-."),
-    ("0.4", ":"),
+    (GREEN, "-"), (BLUE, "--"), (ORANGE, "-."), (SKY, (0, (8, 2))), (PURPLE, (0, (3, 1, 1, 1))),
+    (VERMILION, (0, (5, 1, 1, 1, 1, 1))), ("0.4", ":"),
 )  # fmt: skip
 _DEEPEST = 8.0
 """Of the transforms that are drawn, µm."""
@@ -26,7 +26,7 @@ def michelson_figure(table: xr.Dataset) -> Figure:
     figure.suptitle(title(table, "Michelson interferometer"))
     transform.plot(table["depth"], table["michelson_magnitude"], color=BLUE, marker=".")
     transform.set_xlim(0, 2 * _DEEPEST)
-    transform.set_xlabel("Length L, one way (µm)")
+    transform.set_xlabel(f"Length L, one way (µm); shown to {2 * _DEEPEST:g} µm")
     transform.set_ylabel("Magnitude")
     arm = table["arm"]
     moved.plot(
@@ -62,9 +62,9 @@ def plates_figure(table: xr.Dataset) -> Figure:
     spectrum.set_xlabel(label(table["wavenumber"]))
     spectrum.set_ylabel("Intensity (0 to 1)")
     transform.set_xlim(0, _DEEPEST)
-    transform.set_xlabel(label(table["depth"]))
+    transform.set_xlabel(f"{label(table['depth'])}; shown to {_DEEPEST:g} µm")
     transform.set_ylabel("Magnitude (largest = 1)")
     slope.set_xlabel(label(table["diameter"], "thickness"))
     slope.set_ylabel(label(table["phase_slope"], "phase slope"))
-    figure.legend(loc="outside lower center", ncols=2)
+    figure.legend(loc="outside lower center", ncols=2, handlelength=4)
     return figure

@@ -5,6 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from octsim.figures.marks import mark_clipped, mark_points
 from octsim.figures.style import BLACK, BLUE, ORANGE, title
 
 _BRIGHT = 0.05
@@ -20,25 +21,28 @@ def match_figure(found: xr.Dataset) -> Figure:
     nm = 1e3 * found["wavelength"].values
     measured, error = found["measured_spectrum"].values, found["measured_spectrum_error"].values
     spectra.fill_between(
-        nm, measured - error, measured + error, color=BLACK, alpha=0.3, linewidth=0
-    )
+        nm, measured - error, measured + error, color=BLACK, alpha=0.3, linewidth=0,
+        label="± its standard error",
+    )  # fmt: skip
     spectra.plot(nm, measured, color=BLACK, linewidth=1, label="measured, at rest")
     bright = measured > _BRIGHT * measured.max()
     for axes, over in ((spectra, 1.0), (ratio, measured)):
-        for name, colour, text in (
-            ("modelled_spectrum", ORANGE, "as configured"),
-            ("matched_spectrum", BLUE, "best fit"),
+        for name, colour, line, text in (
+            ("modelled_spectrum", ORANGE, "--", "as configured"),
+            ("matched_spectrum", BLUE, "-", "best fit"),
         ):
             values = found[name].values
             with np.errstate(divide="ignore", invalid="ignore"):
                 drawn = values if axes is spectra else np.where(bright, over / values, np.nan)
-            axes.plot(nm, drawn, color=colour, linewidth=1, label=text)
+            axes.plot(nm, drawn, color=colour, linestyle=line, linewidth=1, label=text)
         axes.set_xlabel("Wavelength (nm)")
-        axes.legend()
     spectra.set_ylabel("Counts without the dark")
     ratio.set_ylabel("Measured over modelled")
     off = np.nanquantile(np.abs(measured / found["matched_spectrum"].values - 1)[bright], 0.99)
     ratio.set_ylim(1 - max(2 * off, _LEAST), 1 + max(2 * off, _LEAST))
+    mark_clipped(ratio)
+    for axes in (spectra, ratio):
+        axes.legend()
     _draw_parameters(parameters, found)
     figure.suptitle(
         title(found, f"Misfit {float(found['misfit']):.2%}, as configured "
@@ -57,6 +61,7 @@ def _draw_parameters(axes: Axes, found: xr.Dataset) -> None:
     rows = np.arange(off.size)
     axes.axvspan(-1, 1, color=BLACK, alpha=0.1, linewidth=0, label="tolerance")
     axes.errorbar(off, rows, xerr=error, fmt="o", color=BLUE, label="best fit")
+    mark_points(axes, off, rows, found["match_status"])
     axes.set_yticks(rows, [str(name) for name in found["parameter"].values])
     axes.set_xscale("symlog", linthresh=3)
     axes.invert_yaxis()

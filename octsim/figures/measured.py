@@ -5,8 +5,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from octsim.figures.envelope import extremes
+from octsim.figures.envelope import band, extremes
 from octsim.figures.expansion import TIME_UNIT
+from octsim.figures.marks import mark_points
 from octsim.figures.style import BLACK, BLUE, ORANGE, title
 from octsim.phase.fringe_status import WITH_PHASE, FringeStatus
 
@@ -33,10 +34,17 @@ def _draw_mean(axes: Axes, found: xr.Dataset) -> None:
     net = np.where(fitted, first - dark, np.nan)
     # as bright as the mean, by least squares
     scale = np.nansum(net * power) / np.nansum(power**2)
-    axes.plot(nm, dark + scale * power, color=ORANGE, linewidth=1, label="source, as bright")
+    axes.plot(
+        nm,
+        dark + scale * power,
+        color=ORANGE,
+        linestyle="--",
+        linewidth=1,
+        label="source, as bright",
+    )
     full = float(found["full_scale"])
     if np.isfinite(full) and first.max() > 0.5 * full:
-        axes.axhline(full, color=BLACK, linestyle="--", linewidth=1, label="full scale")
+        axes.axhline(full, color=BLACK, linestyle=":", linewidth=1, label="full scale")
     axes.set_xlabel("Wavelength (nm)")
     axes.set_ylabel("Counts")
     axes.legend()
@@ -48,12 +56,13 @@ def _draw_phases(axes: Axes, found: xr.Dataset) -> None:
     known = np.isin(status, WITH_PHASE) & np.isfinite(phase)
     phase[known] = np.unwrap(phase[known])
     full = status == FringeStatus.SATURATED
-    if full.any():
-        axes.plot(
-            time[full], phase[full], "o", color=ORANGE, fillstyle="none", label="saturated",
-        )  # fmt: skip
-        axes.legend()
+    mark_points(axes, time, phase, found["spectrum_status"])
     phase[full] = np.nan
+    error = found["fringe_phase_error"].values
+    axes.fill_between(
+        *band(time, phase - error, phase + error), color=BLUE, alpha=0.3, linewidth=0,
+        label="± its standard error",
+    )  # fmt: skip
     shown = extremes(time, phase)
     axes.plot(
         time[shown], phase[shown], color=BLUE, linewidth=1, markersize=3,
@@ -61,3 +70,4 @@ def _draw_phases(axes: Axes, found: xr.Dataset) -> None:
     )  # fmt: skip
     axes.set_xlabel("Time (ms)")
     axes.set_ylabel("Phase of the fringe (rad)")
+    axes.legend()

@@ -20,8 +20,9 @@ from octsim.phase.fringe_status import FringeStatus
 STRONGEST = 8
 """Paths that are drawn."""
 LINES = (
-    (BLUE, "-"), (ORANGE, "-"), (GREEN, "-"), (VERMILION, "--"),
-    (SKY, "--"), (PURPLE, "--"), (BLACK, ":"), ("0.5", ":"),
+    (BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (VERMILION, ":"),
+    (SKY, (0, (8, 2))), (PURPLE, (0, (5, 1, 1, 1, 1, 1))), (BLACK, (0, (1, 2))),
+    ("0.5", (0, (3, 3))),
 )  # fmt: skip
 
 
@@ -51,7 +52,7 @@ def figure_paths(paths: xr.Dataset) -> Figure:
     panels[-1].set_xlabel(label(shown["diameter"]))
     panels[0].set_title(title(paths, "Light paths"))
     handles, names = panels[0].get_legend_handles_labels()
-    figure.legend(handles, names, loc="outside lower center", ncols=2, fontsize=8)
+    figure.legend(handles, names, loc="outside lower center", ncols=2, fontsize=8, handlelength=4)
     if not (paths["field_amplitude"] > 0).any():
         tell(figure, [f"no light on any path: {FringeStatus.NO_LIGHT.remedy}"])
     return figure

@@ -5,6 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from octsim.figures.marks import mark_points
 from octsim.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, label, title
 from octsim.studies.responses.quantities import WITH_MEMBRANE
 
@@ -43,10 +44,11 @@ def _draw(axes: Axes, one: xr.Dataset, name: str, text: str) -> None:
             one["diameter"], values.isel(quantity=place), color=_COLOURS[place % len(_COLOURS)],
             marker=_MARKERS[place % len(_MARKERS)], markersize=4, label=_name(one, place),
         )  # fmt: skip
+        mark_points(axes, one["diameter"], values.isel(quantity=place), one["accuracy_status"])
     axes.set_xlabel(label(one["diameter"], "diameter at rest"))
     axes.set_ylabel(text)
     low, high = axes.get_ylim()
-    axes.set_ylim(low, high + 0.3 * (high - low))  # room for the legend
+    axes.set_ylim(low, high + 0.35 * (high - low))  # room for the legend
     axes.legend(fontsize=8)
 
 
@@ -60,10 +62,15 @@ def _draw_errors(axes: Axes, one: xr.Dataset) -> None:
             )
             axes.plot(
                 one["diameter"], values, color=_COLOURS[place % len(_COLOURS)], linestyle=line,
+                marker=_MARKERS[place % len(_MARKERS)], markersize=4,
                 label=_name(one, place) if name == "error_together" else None,
             )  # fmt: skip
+            if name == "error_together":
+                mark_points(axes, one["diameter"], values, of_shape["separability"][:, place])
     axes.plot([], [], ":", color=BLACK, label="all others known")
     axes.set_yscale("log")
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high * (high / low) ** 0.35)  # room for the legend
     axes.set_xlabel(label(one["diameter"], "diameter at rest"))
     axes.set_ylabel("Standard error by a spectrum (nm, or 10⁻³)")
     axes.legend(fontsize=8, ncols=2)

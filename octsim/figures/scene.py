@@ -45,6 +45,7 @@ def scene_figure(spectra: xr.Dataset) -> Figure:
         handles[::-1], names[::-1], loc="outside lower center", fontsize=7,
         ncols=1 if max(map(len, names), default=0) > _LONG else 2,
         title="light paths, and their fields", title_fontsize=8,
+        handlelength=4,
     )  # fmt: skip
     return figure
 

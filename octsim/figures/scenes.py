@@ -5,6 +5,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from octsim.figures.marks import mark_missing_rows
 from octsim.figures.style import BLACK, BLUE, ORANGE, title
 
 _SCHEMES = (("vogel", "0.6", "v"), ("paths", BLUE, "o"), ("fullwave", ORANGE, "s"))
@@ -21,7 +22,7 @@ def scenes_figure(table: xr.Dataset) -> Figure:
     for axes, (mode, said) in zip(panels, _MODES.items(), strict=True):
         _panel(axes, table.sel(focus_mode=mode, estimator="sinusoid").isel(case=slice(1, None)))
         axes.set_title(said, fontsize=9)
-        axes.set_xlabel("change of the phase slope (mrad/nm)")
+        axes.set_xlabel("Change of the phase slope (mrad/nm)")
     panels[0].set_yticks(np.arange(len(cases)), cases, fontsize=8)
     panels[0].invert_yaxis()
     handles, names = panels[0].get_legend_handles_labels()
@@ -42,6 +43,8 @@ def _panel(axes: Axes, table: xr.Dataset) -> None:
             xerr=one["scene_change_scatter"], color=colour, marker=marker, markersize=3.5,
             linestyle="none", linewidth=0.8, label=scheme,
         )  # fmt: skip
+        lacking = "not by this scheme, or too long"
+        mark_missing_rows(axes, place + 0.22 * (number - 1), one["scene_mean_change"], lacking)
     axes.axvline(0, color=BLACK, linewidth=0.6)
     axes.set_xscale("symlog", linthresh=_LINEAR)
     quantities = table["quantity"].values

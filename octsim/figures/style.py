@@ -2,7 +2,7 @@
 
 import json
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,13 @@ _COMPONENTS = (BLUE, ORANGE, PURPLE, VERMILION, SKY)
 _LETTERS = 110  # of a line below a figure
 _SYMBOLS = {"um": "µm", "um-1": "1/µm", "1": ""}
 _MANY = 5000
+_TOLD = "told"  # marks what is written beside a figure, for its caption
+# what a file would say of its making, and so be other bytes each time
+_UNDATED: Mapping[str, dict[str, Any]] = {
+    ".png": {"Software": None},
+    ".svg": {"Date": None},
+    ".pdf": {"CreationDate": None},
+}
 _LOOK: Any = {
     "axes.formatter.useoffset": False,  # ticks say what they are
     "axes.grid": True,
@@ -40,6 +47,7 @@ _LOOK: Any = {
     "grid.alpha": 0.25,
     "legend.edgecolor": "none",
     "lines.linewidth": 1.5,
+    "pdf.fonttype": 42,  # text stays text, that can be searched and edited
     "svg.hashsalt": "octsim",
 }
 
@@ -86,25 +94,35 @@ def tell(figure: Figure, said: Sequence[str]) -> None:
     if said:
         lines = [line for one in said for line in textwrap.wrap(one, _LETTERS)]
         write = figure.suptitle if figure.legends else figure.supxlabel
-        write("\n".join(lines), color=VERMILION, fontsize=7)
+        write("\n".join(lines), color=VERMILION, fontsize=7, gid=_TOLD)
+
+
+def told_in(figure: Figure) -> list[str]:
+    """Return the lines that are written below a figure, or above it."""
+    return [
+        line
+        for text in figure.texts
+        if text.get_gid() == _TOLD
+        for line in text.get_text().splitlines()
+    ]
 
 
 def save(figure: Figure, path: Path) -> None:
     """Write a figure as its path's ending says, whole or not at all, the same bytes each time.
 
-    What has very many points is pixels in an SVG too, so that its size does not grow with the data.
+    What has very many points is pixels in an SVG or a PDF too, so that its size does not grow with
+    the data.
 
     Raises
     ------
     FileError
         If the file can't be written.
     """
-    metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
     FigureCanvasAgg(figure)
     for artist in figure.findobj(_has_many_points):
         artist.set_rasterized(True)
     with whole(path) as temporary:
-        figure.savefig(temporary, metadata=metadata)
+        figure.savefig(temporary, metadata=_UNDATED[path.suffix])
 
 
 def _has_many_points(artist: Artist) -> bool:

@@ -9,6 +9,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from octsim.figures.marks import mark_doubtful
 from octsim.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILION, label, title
 from octsim.schemes.table import COUNTED_RAYS, FULL_WAVE, LIGHT_PATHS
 from octsim.studies.tradeoff.settings import OF_WAVES
@@ -72,6 +73,7 @@ def _panels(measured: xr.Dataset, panels: _Panels) -> tuple[Figure, Sequence[Axe
     drawn = list(figure.subplots(1, 2))
     for axes, (cost, error, efficient, *names) in zip(drawn, panels, strict=True):
         _draw(axes, measured, cost, error)
+        _mark(axes, measured, cost, error)
         _frontier(axes, measured, cost, error, efficient)
         _name(axes, measured, cost, error)
         axes.set_xscale("log")
@@ -112,6 +114,13 @@ def _draw(axes: Axes, measured: xr.Dataset, cost: str, error: str) -> None:
                     color=colour, markerfacecolor=face,
                     label=text if part is whole else f"{text}, some diameters", zorder=3,
                 )  # fmt: skip
+
+
+def _mark(axes: Axes, measured: xr.Dataset, cost: str, error: str) -> None:
+    """Mark the settings that say themselves that they are not as accurate as was asked."""
+    late = measured.isel(setting=(measured["unreached"] > 0) & (measured[error] > 0))
+    why = "accuracy not reached at some diameters"
+    mark_doubtful(axes, late[cost], late[error], why)
 
 
 def _frontier(axes: Axes, measured: xr.Dataset, cost: str, error: str, efficient: str) -> None:

@@ -5,10 +5,13 @@ import itertools
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
+from numpy.typing import NDArray
 
-from octsim.figures.style import label, title
+from octsim.figures.style import BLACK, label, title
 
 _NAMES = {"follows": "focus follows", "held": "focus held", "fft": "FFT", "sinusoid": "sinusoid"}
 
@@ -30,6 +33,7 @@ def validity_figure(table: xr.Dataset) -> Figure:
             table["diameter"], np.arange(len(cases)), 100 * values.values, norm=norm, cmap=colours,
             shading="nearest",
         )  # fmt: skip
+        _signs(axes, table["diameter"].values, values.values)
         axes.grid(visible=False)
         axes.set_title(f"{_NAMES[str(mode)]}, {_NAMES[str(estimator)]}", fontsize=9)
         axes.set_xlabel(label(table["diameter"], "diameter"))
@@ -42,7 +46,17 @@ def validity_figure(table: xr.Dataset) -> Figure:
             axes.axhline(place + 0.5, color="0.3", linewidth=0.8)
     figure.colorbar(
         image, ax=panels, location="bottom", aspect=60, pad=0.02, ticks=edges, format="%+g %%",
-        label="Error of the phase slope by rays (grey: no fringe)",
+        label="Error of the phase slope by rays (+ or −: its sign; ×: no fringe)",
     )  # fmt: skip
     figure.suptitle(title(table, "Rays beside Maxwell's equations"))
     return figure
+
+
+def _signs(axes: Axes, diameter: NDArray[np.float64], error: NDArray[np.float64]) -> None:
+    """Write the sign of each error, which a colour does not tell in grey."""
+    for (row, column), value in np.ndenumerate(error):
+        sign = ("+" if value > 0 else "−") if np.isfinite(value) else "×"
+        axes.text(
+            float(diameter[column]), row, sign, ha="center", va="center", fontsize=5, color=BLACK,
+            clip_on=True, path_effects=[withStroke(linewidth=1, foreground="white")],
+        )  # fmt: skip

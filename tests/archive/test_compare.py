@@ -545,7 +545,7 @@ def test_the_exit_status_tells_the_same_from_different_and_from_wrong(
     for bad in (
         ["--tolerance", "-1"],
         ["--tolerance", "nan"],
-        ["--figure", "a.pdf"],
+        ["--figure", "a.gif"],
         ["more"],
         ["--figure", "a.png", "--no-figure"],
     ):

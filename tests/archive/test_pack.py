@@ -22,6 +22,7 @@ from octsim.archive.pack import pack
 from octsim.archive.verify import problems, unpack, unpacked, verify
 from octsim.cli.main import main
 from octsim.datasets.files import write
+from octsim.datasets.gallery import FORMS
 
 ABOUT: dict[str, Any] = {
     "title": "Ours | {run}",
@@ -41,7 +42,8 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("made") / "tiny"
     make(folder)
     make(folder, scan=False)
-    for name in ("figures/figure_6.png", "figures/figure_6.svg", "figures/mine.png", "logs/a.log"):
+    drawn = (f"figures/figure_6.{form}" for form in FORMS)
+    for name in (*drawn, "figures/mine.png", "logs/a.log"):
         (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_bytes(b"drawn")
     return folder
@@ -72,8 +74,9 @@ def test_an_archive_holds_the_run_and_what_explains_it(folder: Path) -> None:
     assert packed.file == folder / "tiny.zip"
     assert packed.bytes == packed.file.stat().st_size
     assert names_in(packed.file) == [
-        "README.md", "SHA256SUMS", "config.yaml", "environment.json", "figures/figure_6.png",
-        "figures/figure_6.svg", "focus_scan.nc", "phase_slope.nc", "requirements.lock",
+        "README.md", "SHA256SUMS", "config.yaml", "environment.json", "figures/figure_6.pdf",
+        "figures/figure_6.png", "figures/figure_6.svg", "figures/figure_6.txt", "focus_scan.nc",
+        "phase_slope.nc", "requirements.lock",
         "ro-crate-metadata.json", "spectra.nc",
     ]  # fmt: skip
     goes_without, left_out = packed.remarks
@@ -363,7 +366,10 @@ def test_the_metadata_is_an_ro_crate(folder: Path, tmp_path: Path) -> None:
         assert int(graph[name]["contentSize"]) == (out / name).stat().st_size
         assert graph[name]["name"]
     assert "phase_slope (mrad/nm)" in graph["phase_slope.nc"]["variableMeasured"]
-    assert graph["figures/figure_6.png"]["isBasedOn"] == [{"@id": "focus_scan.nc"}]
+    for form, media in FORMS.items():
+        figure = graph[f"figures/figure_6.{form}"]
+        assert figure["isBasedOn"] == [{"@id": "focus_scan.nc"}]
+        assert figure["encodingFormat"] == media
     (action,) = (one for one in told["@graph"] if one["@type"] == "CreateAction")
     assert graph[action["instrument"]["@id"]]["softwareVersion"] == octsim.__version__
     assert {one["@id"] for one in action["result"]} == {n for n in files if n.endswith(".nc")}
@@ -396,7 +402,7 @@ def test_no_file_is_packed_but_those_of_the_run(folder: Path, tmp_path: Path) ->
     secret.write_text("a key")
     (folder / "figures" / "figure_6.svg").unlink()
     (folder / "figures" / "figure_6.svg").symlink_to(secret)
-    (folder / "figures" / "figure_6.pdf").write_text("mine")
+    (folder / "figures" / "figure_6.gif").write_text("mine")
     shutil.copy(folder / "spectra.nc", folder / "spectra_backup.nc")
     (folder / ".spectra.partial.nc").touch()
     config = octsim.load_config(config_of(folder).to_dict())
@@ -405,10 +411,10 @@ def test_no_file_is_packed_but_those_of_the_run(folder: Path, tmp_path: Path) ->
     with zipfile.ZipFile(packed.file) as archive:
         names = archive.namelist()
     assert "figures/figure_6.png" in names
-    assert not {"figures/figure_6.svg", "figures/figure_6.pdf", "spectra_backup.nc"} & set(names)
+    assert not {"figures/figure_6.svg", "figures/figure_6.gif", "spectra_backup.nc"} & set(names)
     assert b"a key" not in packed.file.read_bytes()
     (left,) = (said for said in packed.remarks if "left out" in said)
-    for name in ("figures/figure_6.svg", "figures/figure_6.pdf", "spectra_backup.nc"):
+    for name in ("figures/figure_6.svg", "figures/figure_6.gif", "spectra_backup.nc"):
         assert name in left
 
 

@@ -13,13 +13,15 @@ from matplotlib.colors import to_rgb
 
 import octsim
 from octsim.config.processing import Processing
-from octsim.datasets.gallery import all_run_figures
+from octsim.datasets.gallery import FORMS, all_run_figures
 from octsim.figures.draw import figure_of
+from octsim.figures.paths import LINES
 from octsim.figures.style import component_colour, look, save
 from octsim.stages.centres import CentreUse
 from octsim.stages.gaussian_fits import FitStatus
 
 FIGURES = all_run_figures()
+IMAGES = [form for form in FORMS if form != "txt"]
 GRID = {"processing.window": ["hann", "hamming"], "processing.centre": ["mean", "midpoint"]}
 
 
@@ -37,9 +39,9 @@ def test_a_figure_is_the_same_bytes_each_time_and_has_units(
         with look():
             given = stages | {"phase_slope": over_grid} if name == "grid" else stages
             figure = figure_of(FIGURES[name], given, Processing())
-            for form in ("png", "svg"):
+            for form in IMAGES:
                 save(figure, tmp_path / f"{copy}.{form}")
-    for form in ("png", "svg"):
+    for form in IMAGES:
         assert (tmp_path / f"a.{form}").read_bytes() == (tmp_path / f"b.{form}").read_bytes()
     labels = {text for axes in figure.axes for text in (axes.get_xlabel(), axes.get_ylabel())}
     assert labels - {""} == LABELS[name]
@@ -50,7 +52,7 @@ def test_no_matplotlibrc_of_the_user_changes_a_byte(
 ) -> None:
     theirs: dict[Any, Any] = {
         "savefig.dpi": 300, "savefig.bbox": "tight", "axes.labelsize": 20, "lines.marker": "o",
-        "text.usetex": True, "svg.fonttype": "none", "axes.facecolor": "black",
+        "text.usetex": True, "svg.fonttype": "none", "pdf.fonttype": 3, "axes.facecolor": "black",
         "path.simplify": False, "font.family": "serif", "axes.formatter.use_locale": True,
         "timezone": "Europe/Berlin", "svg.id": "theirs",
     }  # fmt: skip
@@ -59,10 +61,10 @@ def test_no_matplotlibrc_of_the_user_changes_a_byte(
             before = dict(mpl.rcParams.copy())
             with look():
                 figure = figure_of(FIGURES["figure_12"], stages, Processing())
-                for form in ("png", "svg"):
+                for form in IMAGES:
                     save(figure, tmp_path / f"{copy}.{form}")
             assert dict(mpl.rcParams.copy()) == before
-    for form in ("png", "svg"):
+    for form in IMAGES:
         assert (tmp_path / f"none.{form}").read_bytes() == (
             tmp_path / f"theirs.{form}"
         ).read_bytes()
@@ -173,3 +175,47 @@ def test_diameters_without_a_peak_are_named_below_the_law(stages: dict[str, xr.D
         in written
     )
     assert figure.axes[0].get_xlim() == (diameter[0], diameter[-1])
+
+
+def test_text_in_a_pdf_is_text_and_no_date_stands_in_it(
+    stages: dict[str, xr.Dataset], tmp_path: Path
+) -> None:
+    with look():
+        save(figure_of(FIGURES["figure_12"], stages, Processing()), tmp_path / "a.pdf")
+    held = (tmp_path / "a.pdf").read_bytes()
+    assert held.startswith(b"%PDF")
+    # outlines of a TrueType font, that a reader maps to letters; not drawn shapes of letters
+    assert b"/FontFile2" in held
+    assert b"/ToUnicode" in held
+    assert b"/Type3" not in held
+    assert b"/CreationDate" not in held
+
+
+def test_a_component_that_leaves_figure_12_is_marked_at_its_edge(
+    stages: dict[str, xr.Dataset],
+) -> None:
+    slopes = stages["phase_slope"].copy(deep=True)
+    strongest = slopes["strongest_component"].values
+    other = next(number for number in np.unique(strongest) if (strongest != number).any())
+    slopes["component_phase_slope"].values[strongest != other, other] = 1e4
+    figure = figure_of(FIGURES["figure_12"], stages | {"phase_slope": slopes}, Processing())
+    said = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "leaves the axes, to 1e+04" in said
+
+
+DIAMETERS = xr.DataArray(np.arange(9) % 4 == 1, dims="diameter")
+
+
+def test_slopes_by_maxwells_equations_are_points_with_nothing_between_them(
+    stages: dict[str, xr.Dataset],
+) -> None:
+    exact_slope = stages["phase_slope"]["phase_slope"].where(DIAMETERS)
+    slopes = stages["phase_slope"].assign(exact_phase_slope=exact_slope)
+    figure = figure_of(FIGURES["figure_12"], stages | {"phase_slope": slopes}, Processing())
+    (exact,) = (one for one in figure.axes[0].lines if one.get_label() == "Maxwell's equations")
+    assert exact.get_linestyle() == "None"
+
+
+def test_every_light_path_has_a_dash_pattern_of_its_own() -> None:
+    """So that they are told apart in grey."""
+    assert len({str(line) for _, line in LINES}) == len(LINES)

@@ -18,7 +18,7 @@ from edits import EDITS, EVERYTHING, edit_of
 
 from octsim.config.known_keys import known_keys
 from octsim.config.models import Config
-from octsim.datasets.gallery import CAPTIONS
+from octsim.datasets.gallery import CAPTIONS, FORMS
 
 STAGES = [
     "focus_scan", "focus_sweep", "gaussian_fits", "focus_law", "detections", "spectra", "paths",
@@ -397,7 +397,7 @@ def test_a_grid_gives_one_dataset_a_stage_with_its_keys_as_dimensions(grid: Chec
     assert dimensions.pop("fourier") == dimensions.pop("phase_slope") == {"gap", "window"}
     assert set(map(frozenset, dimensions.values())) == {frozenset({"gap"})}
     figures = sorted(path.name for path in (folder / "figures").iterdir())
-    assert figures == ["figure_1.png", "figure_1.svg", "grid.png", "grid.svg"]
+    assert figures == [f"{one}.{form}" for one in ("figure_1", "grid") for form in sorted(FORMS)]
     assert sum(counts(grid, "grid")["detections"].values()) == 18  # not once a window
 
 
