@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 from octsim.figures.expansion import TIME_UNIT, draw_expansion, standard_error
@@ -36,8 +37,8 @@ def _draw_errors(axes: Axes, fired: xr.Dataset) -> None:
         (standard_error(fired), SKY, "", "± stated error"),
     ):
         axes.fill_between(
-            time, -1e3 * error, 1e3 * error, color=colour, alpha=0.35, linewidth=0, label=text,
-            hatch=hatch,
+            time, -1e3 * error, 1e3 * error, facecolor=to_rgba(colour, 0.35), edgecolor=colour,
+            linewidth=0, hatch=hatch, label=text,
         )  # fmt: skip
     for name, colour, marker, text in (
         ("fft_expansion", VERMILION, "x", "the thesis's way"),

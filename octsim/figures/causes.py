@@ -116,10 +116,10 @@ def causes_figure(found: xr.Dataset) -> Figure:
             markersize=4, color=colour, label=name, linewidth=1.2,
         )  # fmt: skip
     step.set_xscale("log")
-    step.set_ylim(0, None)
+    step.set_ylim(0, 1.5 * step.get_ylim()[1])  # room for the legend
     step.set_xlabel("Step to each side of the difference (nm)")
     step.set_ylabel(label(found["step_scatter"], "scatter of the slope"))
-    step.legend(fontsize=8)
+    step.legend(fontsize=8, ncols=2, loc="upper right")
     figure.suptitle(title(found, "What makes the phase slope scatter"))
     return figure
 
@@ -144,7 +144,9 @@ def _slopes(axes: Axes, found: xr.Dataset) -> None:
     )  # fmt: skip
     axes.set_xlabel(label(place))
     axes.set_ylabel(label(found["phase_slope"], "phase slope"))
-    axes.legend(fontsize=8)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.35 * (high - low))  # room for the legend
+    axes.legend(fontsize=8, ncols=2, loc="upper right")
 
 
 def _shares(axes: Axes, found: xr.Dataset) -> None:

@@ -6,10 +6,12 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from octsim.figures.marks import doubtful, mark_doubtful, mark_missing, named
 from octsim.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, label, title
 
 _COLOURS = (BLUE, ORANGE, GREEN, PURPLE, VERMILION, SKY)
 _MARKERS = "osv^DP"
+_STATUSES = ("accuracy_status", "fringe_status")
 
 
 def design_figure(table: xr.Dataset) -> Figure:
@@ -53,13 +55,26 @@ def _draw_apertures(axes: Axes, table: xr.Dataset) -> None:
     error = table["rms_error"]
     least = error.min(set(error.dims) - {"aperture", "band"})
     for band, colour, marker in zip(table["band"].values, _COLOURS * 9, _MARKERS * 9, strict=False):
-        axes.plot(
-            table["aperture"], least.sel(band=band), color=colour, marker=marker, label=str(band)
-        )
+        values = least.sel(band=band)
+        axes.plot(table["aperture"], values, color=colour, marker=marker, label=str(band))
+        mark_missing(axes, table["aperture"], values)
+        for aperture, value in zip(table["aperture"].values, values.values, strict=True):
+            if why := _doubts(table.sel(band=band, aperture=aperture)):
+                mark_doubtful(axes, [aperture], [value], why)
     axes.set_yscale("log")
     axes.set_xlabel("Numerical aperture")
     axes.set_ylabel(label(error, "least error, rms over the diameters"))
     axes.legend(fontsize=8)
+
+
+def _doubts(one: xr.Dataset) -> str:
+    """Say which doubtful statuses the best setting has, of those of one aperture and band."""
+    if one["rms_error"].isnull().all():
+        return ""
+    best = one["rms_error"].argmin(...)
+    statuses = (one[name].isel(best, missing_dims="ignore") for name in _STATUSES)
+    said = [named(status, where) for status in statuses if (where := doubtful(status)).any()]
+    return ", ".join(said)
 
 
 def _draw_estimators(axes: Axes, table: xr.Dataset) -> None:

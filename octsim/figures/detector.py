@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from octsim.figures.marks import mark_missing, mark_points
 from octsim.figures.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, VERMILION, label, title
 from octsim.studies.detector.recommended import chosen, own
 
@@ -32,8 +33,10 @@ def detector_figure(table: xr.Dataset) -> Figure:
     without = [
         str(name) for name in table["falloff"].values if edge.sel(falloff=name).isnull().all()
     ]
-    if without:
-        panels[1].set_title(f"none: {' and '.join(without)}", fontsize=8)
+    some = edge.sel(falloff=[str(name) for name in table["falloff"].values if name not in without])
+    mark_missing(panels[1], some["detector_radius"], some.sum("falloff", skipna=False))
+    none = [f"none: {' and '.join(without)}"] if without else []
+    panels[1].set_title("; ".join([*none, "×: none of some other"]), fontsize=8)
     _over_radius(panels[2], counted["slope_scatter"], "Scatter of the slope", log=True)
     _over_radius(panels[3], counted["signal"], "Signal, mean intensity", log=True)
     _over_radius(panels[4], counted["line_slope"], "Slope of the line through the phase")
@@ -41,8 +44,9 @@ def detector_figure(table: xr.Dataset) -> Figure:
     if np.isfinite(exact):
         panels[4].axhline(exact, color=BLACK, linestyle="--")
         panels[4].annotate(
-            "Maxwell's", (0.03, exact), xycoords=("axes fraction", "data"), fontsize=8,
+            "Maxwell's", (0.98, exact), xycoords=("axes fraction", "data"), fontsize=8, ha="right",
             xytext=(0, 3), textcoords="offset points",
+            bbox={"facecolor": "white", "alpha": 0.7, "linewidth": 0, "pad": 0.5},
         )  # fmt: skip
     _over_radius(panels[5], counted["slope_difference"], "Slope less Maxwell's, rms")
     _over_radius(panels[6], counted["shape_difference"], "Spectrum's shape less Maxwell's, rms")
@@ -55,8 +59,7 @@ def detector_figure(table: xr.Dataset) -> Figure:
         panels[0].plot(
             taken.radius, at, "o", markersize=14, markerfacecolor="none", markeredgecolor=BLACK
         )
-    handles, names = panels[2].get_legend_handles_labels()
-    panels[2].legend(handles, names, fontsize=8)
+    panels[3].legend(fontsize=8, loc="lower right")  # a signal grows with the radius
     what = "The detector's falloff and radius (dotted: the run's own)"
     figure.suptitle(title(table, what), fontsize=12)
     said = str(table.attrs["recommendation"])
@@ -92,11 +95,15 @@ def _slopes(axes: Axes, table: xr.Dataset) -> None:
     """Draw local slopes by counted rays at the run's own radius."""
     radius = own(table).radius
     slopes = table["ray_phase_slope"].sel(ray_scheme="vogel", detector_radius=radius)
+    status = table["fringe_status"].sel(ray_scheme="vogel", detector_radius=radius)
     for falloff, line in _DASHES.items():
         axes.plot(
             table["diameter"], slopes.sel(falloff=falloff), color=_COLOURS[falloff], linestyle=line,
             label=falloff.replace("_", " "), linewidth=1.0,
         )  # fmt: skip
+        mark_points(
+            axes, table["diameter"], slopes.sel(falloff=falloff), status.sel(falloff=falloff)
+        )
     axes.set_xlabel(label(table["diameter"], "diameter"))
     axes.set_ylabel(label(slopes, f"local slope at R_det {radius:.3g} µm"))
     axes.legend(fontsize=8)

@@ -8,6 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from octsim.figures.marks import mark_missing
 from octsim.figures.style import (
     BLACK,
     BLUE,
@@ -72,7 +73,8 @@ def _scatter(axes: Axes, compared: xr.Dataset) -> None:
     axes.invert_yaxis()
     axes.set_xscale("log")
     axes.set_xlim(left=least)
-    axes.set_xlabel(label(compared["scatter"], "scatter about the trend"))
+    name = f"{label(compared['scatter'], 'scatter about the trend')}; without a bar it is rounding"
+    axes.set_xlabel(name)
     axes.legend(fontsize=8)
 
 
@@ -85,6 +87,7 @@ def _resolution(axes: Axes, compared: xr.Dataset) -> None:
             compared["snr"], error, color=colour, marker=marker, markersize=5, linestyle=line,
             linewidth=1.0, label=name.replace("_", " "),
         )  # fmt: skip
+        mark_missing(axes, compared["snr"], error)
     axes.plot(
         compared["snr"], picometres * compared["bound"], color=BLACK, linestyle="--",
         label="Cramér–Rao bound; left, the light's own phase",

@@ -60,8 +60,7 @@ def mark_points(axes: Axes, x: ArrayLike, y: ArrayLike, status: xr.DataArray | N
         _enter(axes, f"doubtful, at every point: {named(status, marked)}", **DOUBTFUL)
     else:
         mark_doubtful(axes, place[marked], value[marked], named(status, marked))
-    reasons = named(status, amiss & ~known)
-    _mark_missing(axes, place[~known], f"no value: {reasons}" if reasons else "no value")
+    mark_missing(axes, place, value, named(status, amiss & ~known))
 
 
 def mark_doubtful(axes: Axes, x: ArrayLike, y: ArrayLike, why: str) -> None:
@@ -71,10 +70,11 @@ def mark_doubtful(axes: Axes, x: ArrayLike, y: ArrayLike, why: str) -> None:
         _enter(axes, f"doubtful: {why}", **DOUBTFUL)
 
 
-def mark_missing(axes: Axes, x: ArrayLike, y: ArrayLike) -> None:
+def mark_missing(axes: Axes, x: ArrayLike, y: ArrayLike, why: str = "") -> None:
     """Mark at the lower edge of axes the points (N,) without a value."""
     missing = ~np.isfinite(np.asarray(y, float))
-    _mark_missing(axes, np.asarray(x, float)[missing], "no value")
+    text = f"no value: {why}" if why else "no value"
+    _mark_missing(axes, np.asarray(x, float)[missing], text)
 
 
 def mark_missing_rows(axes: Axes, rows: ArrayLike, values: ArrayLike, why: str) -> None:

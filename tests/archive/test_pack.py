@@ -152,7 +152,7 @@ def test_coreutils_agree(folder: Path, tmp_path: Path) -> None:
 
     done = checked()
     assert done.returncode == 0, done.stderr
-    assert len(done.stdout.splitlines()) == 10
+    assert len(done.stdout.splitlines()) == 12
     (tmp_path / "out" / "spectra.nc").write_bytes(b"other")
     assert "spectra.nc: FAILED" in checked().stdout
 
