@@ -102,8 +102,9 @@ def _slopes(axes: Axes, table: xr.Dataset) -> None:
             label=falloff.replace("_", " "), linewidth=1.0,
         )  # fmt: skip
         mark_points(
-            axes, table["diameter"], slopes.sel(falloff=falloff), status.sel(falloff=falloff)
-        )
+            axes, table["diameter"], slopes.sel(falloff=falloff), status.sel(falloff=falloff),
+            falloff.replace("_", " "),
+        )  # fmt: skip
     axes.set_xlabel(label(table["diameter"], "diameter"))
     axes.set_ylabel(label(slopes, f"local slope at R_det {radius:.3g} µm"))
     axes.legend(fontsize=8)

@@ -24,6 +24,7 @@ DOUBTFUL: Mapping[str, Any] = {
 """Look of the mark of a point that is to be doubted."""
 MISSING: Mapping[str, Any] = {"color": "0.35", "marker": "x", "markersize": 5}
 """Look of the mark of what has no value."""
+_MANY = 30
 _EDGE = 0.015
 """Of the axes' height, between its edge and a mark there."""
 
@@ -44,10 +45,23 @@ def named(status: xr.DataArray, where: NDArray[np.bool_]) -> str:
     )
 
 
-def mark_points(axes: Axes, x: ArrayLike, y: ArrayLike, status: xr.DataArray | None) -> None:
+def mark_points(
+    axes: Axes, x: ArrayLike, y: ArrayLike, status: xr.DataArray | None, curve: str = ""
+) -> None:
     """Mark the points (N,) of a doubtful status, and at the lower edge those without a value.
 
-    Both stand in the legend once, with what the status is. Old files have no status: None.
+    Both stand in the legend once, with what the status is.
+
+    Parameters
+    ----------
+    axes : Axes
+        Where the points are drawn.
+    x, y : array_like, shape (N,)
+        The points; NaN where there is no value.
+    status : DataArray, shape (N,), optional
+        Its flags say what it means. Old files have none.
+    curve : str
+        Name of the curve, where there are several.
     """
     if status is None:
         mark_missing(axes, x, y)
@@ -55,9 +69,10 @@ def mark_points(axes: Axes, x: ArrayLike, y: ArrayLike, status: xr.DataArray | N
     place, value = np.asarray(x, float), np.asarray(y, float)
     known, amiss = np.isfinite(value), doubtful(status)
     marked = known & amiss
-    if known.sum() > 1 and (marked == known).all():
-        # a mark on each would hide the curve, and tell none from another
-        _enter(axes, f"doubtful, at every point: {named(status, marked)}", **DOUBTFUL)
+    if marked.sum() > _MANY and (marked == known).all():
+        # marks on all would hide the curve, and tell no point from another
+        of = f"every point of {curve}" if curve else "every point"
+        _enter(axes, f"doubtful, at {of}: {named(status, marked)}", **DOUBTFUL)
     else:
         mark_doubtful(axes, place[marked], value[marked], named(status, marked))
     mark_missing(axes, place, value, named(status, amiss & ~known))
@@ -66,8 +81,8 @@ def mark_points(axes: Axes, x: ArrayLike, y: ArrayLike, status: xr.DataArray | N
 def mark_doubtful(axes: Axes, x: ArrayLike, y: ArrayLike, why: str) -> None:
     """Mark points (N,) that are doubtful by a hollow square, and say why in the legend, once."""
     if np.size(x):
-        axes.plot(x, y, linestyle="none", zorder=3, **DOUBTFUL)
-        _enter(axes, f"doubtful: {why}", **DOUBTFUL)
+        text = _once(axes, f"doubtful: {why}")
+        axes.plot(x, y, linestyle="none", zorder=3, label=text, **DOUBTFUL)
 
 
 def mark_missing(axes: Axes, x: ArrayLike, y: ArrayLike, why: str = "") -> None:
@@ -83,9 +98,8 @@ def mark_missing_rows(axes: Axes, rows: ArrayLike, values: ArrayLike, why: str) 
     if missing.any():
         axes.plot(
             np.full(int(missing.sum()), _EDGE), np.asarray(rows, float)[missing], linestyle="none",
-            transform=axes.get_yaxis_transform(), **MISSING,
+            transform=axes.get_yaxis_transform(), label=_once(axes, f"no value: {why}"), **MISSING,
         )  # fmt: skip
-        _enter(axes, f"no value: {why}", **MISSING)
 
 
 def mark_clipped(axes: Axes) -> None:
@@ -135,12 +149,16 @@ def _mark_missing(axes: Axes, place: Floats, text: str) -> None:
     if place.size:
         axes.plot(
             place, np.full(place.size, _EDGE), linestyle="none", zorder=3,
-            transform=axes.get_xaxis_transform(), **MISSING,
+            transform=axes.get_xaxis_transform(), label=_once(axes, text), **MISSING,
         )  # fmt: skip
-        _enter(axes, text, **MISSING)
+
+
+def _once(axes: Axes, text: str) -> str | None:
+    """Return what a legend is to say, or None if it says so already."""
+    return None if text in axes.get_legend_handles_labels()[1] else text
 
 
 def _enter(axes: Axes, text: str, **look: Any) -> None:
-    """Give the axes' legend an entry, unless it has it."""
-    if text not in axes.get_legend_handles_labels()[1]:
-        axes.add_line(Line2D([], [], linestyle="none", label=text, **look))
+    """Give the axes' legend an entry of its own, unless it has it."""
+    if label := _once(axes, text):
+        axes.add_line(Line2D([], [], linestyle="none", label=label, **look))

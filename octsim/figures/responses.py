@@ -39,12 +39,19 @@ def _name(one: xr.Dataset, place: int) -> str:
 def _draw(axes: Axes, one: xr.Dataset, name: str, text: str) -> None:
     """Draw something of the whole band's phase over the diameter, for each quantity."""
     values = one[name].sel(observable="whole")
+    error = one.get(f"{name}_standard_error", xr.zeros_like(one[name])).sel(observable="whole")
     for place in range(one.sizes["quantity"]):
+        curve, own = values.isel(quantity=place), error.isel(quantity=place)
+        axes.fill_between(
+            one["diameter"], curve - own, curve + own, color=_COLOURS[place % len(_COLOURS)], alpha=0.2, linewidth=0,
+        )  # fmt: skip
         axes.plot(
-            one["diameter"], values.isel(quantity=place), color=_COLOURS[place % len(_COLOURS)],
+            one["diameter"], curve, color=_COLOURS[place % len(_COLOURS)],
             marker=_MARKERS[place % len(_MARKERS)], markersize=4, label=_name(one, place),
         )  # fmt: skip
-        mark_points(axes, one["diameter"], values.isel(quantity=place), one["accuracy_status"])
+        mark_points(
+            axes, one["diameter"], curve, one["accuracy_status"], _name(one, place),
+        )  # fmt: skip
     axes.set_xlabel(label(one["diameter"], "diameter at rest"))
     axes.set_ylabel(text)
     low, high = axes.get_ylim()
@@ -66,7 +73,8 @@ def _draw_errors(axes: Axes, one: xr.Dataset) -> None:
                 label=_name(one, place) if name == "error_together" else None,
             )  # fmt: skip
             if name == "error_together":
-                mark_points(axes, one["diameter"], values, of_shape["separability"][:, place])
+                status = of_shape["separability"][:, place]
+                mark_points(axes, one["diameter"], values, status, _name(one, place))
     axes.plot([], [], ":", color=BLACK, label="all others known")
     axes.set_yscale("log")
     low, high = axes.get_ylim()

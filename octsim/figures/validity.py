@@ -57,6 +57,6 @@ def _signs(axes: Axes, diameter: NDArray[np.float64], error: NDArray[np.float64]
     for (row, column), value in np.ndenumerate(error):
         sign = ("+" if value > 0 else "−") if np.isfinite(value) else "×"
         axes.text(
-            float(diameter[column]), row, sign, ha="center", va="center", fontsize=5, color=BLACK,
+            float(diameter[column]), row, sign, ha="center", va="center", fontsize=7, color=BLACK,
             clip_on=True, path_effects=[withStroke(linewidth=1, foreground="white")],
         )  # fmt: skip

@@ -80,12 +80,16 @@ def test_a_point_without_a_value_is_marked_at_the_lower_edge_with_its_reason(axe
     assert legend(axes) == ["no value: no light"]
 
 
-def test_where_all_points_are_doubtful_the_legend_says_so_and_no_curve_is_hidden(
+def test_where_all_of_many_are_doubtful_the_legend_says_so_and_no_curve_is_hidden(
     axes: Axes,
 ) -> None:
-    mark_points(axes, X, X, status_of(*[FringeStatus.MIXED] * 5))
+    many = np.arange(99.0)
+    mark_points(axes, many, many, status_of(*[FringeStatus.MIXED] * 99))
+    mark_points(axes, many, many, status_of(*[FringeStatus.MIXED] * 99), "the gap")
     assert marked(axes, DOUBTFUL["marker"]) == []
-    assert legend(axes) == ["doubtful, at every point: mixed"]
+    assert legend(axes) == [
+        "doubtful, at every point: mixed", "doubtful, at every point of the gap: mixed"
+    ]  # fmt: skip
 
 
 def test_old_files_without_a_status_have_their_gaps_marked(axes: Axes) -> None:

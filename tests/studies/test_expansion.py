@@ -287,13 +287,14 @@ def test_few_samples_at_rest_widen_the_error_as_student_s_t_does(table: xr.Datas
         assert float(found["rest_scatter"]) == pytest.approx(scatter)
 
 
-def test_a_figure_rings_the_outliers(table: xr.Dataset) -> None:
+def test_a_figure_marks_the_outliers(table: xr.Dataset) -> None:
     phase = phases(PULSE) + QUIET
     phase[149] += 0.2
     marking = load_config({"expansion": {"outliers": "mark"}})
     (axes,) = expansion_figure(series_expansion(marking, Series(LONG, phase), table)).axes
-    (ringed,) = [line for line in axes.lines if line.get_label() == "outliers, alone among others"]
-    assert np.asarray(ringed.get_xdata()) == pytest.approx([7.45])
+    said = "doubtful: outliers, alone among others"
+    (marked,) = [line for line in axes.lines if line.get_label() == said]
+    assert np.asarray(marked.get_xdata()) == pytest.approx([7.45])
 
 
 @pytest.mark.parametrize("change", [-10.0, -1.0, 1.0, 10.0])
