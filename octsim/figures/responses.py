@@ -43,7 +43,8 @@ def _draw(axes: Axes, one: xr.Dataset, name: str, text: str) -> None:
     for place in range(one.sizes["quantity"]):
         curve, own = values.isel(quantity=place), error.isel(quantity=place)
         axes.fill_between(
-            one["diameter"], curve - own, curve + own, color=_COLOURS[place % len(_COLOURS)], alpha=0.2, linewidth=0,
+            one["diameter"], curve - own, curve + own, color=_COLOURS[place % len(_COLOURS)],
+            alpha=0.2, linewidth=0,
         )  # fmt: skip
         axes.plot(
             one["diameter"], curve, color=_COLOURS[place % len(_COLOURS)],
