@@ -1,5 +1,7 @@
 """What each light path has in the spectra, over the diameter."""
 
+from typing import Any
+
 import xarray as xr
 from matplotlib.figure import Figure
 
@@ -19,11 +21,12 @@ from octsim.phase.fringe_status import FringeStatus
 
 STRONGEST = 8
 """Paths that are drawn."""
-LINES = (
+LINES: tuple[tuple[str, Any], ...] = (
     (BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (VERMILION, ":"),
     (SKY, (0, (8, 2))), (PURPLE, (0, (5, 1, 1, 1, 1, 1))), (BLACK, (0, (1, 2))),
     ("0.5", (0, (3, 3))),
 )  # fmt: skip
+"""Colour and line of each path, the strongest first; each is another in grey too."""
 
 
 def figure_paths(paths: xr.Dataset) -> Figure:
