@@ -2,7 +2,9 @@
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from octsim.figures.marks import mark_points
 from octsim.figures.style import BLUE, ORANGE, label
@@ -13,6 +15,7 @@ _MARKS = 12  # along a curve
 # each leaves room for the other's, so that curves that fall together are both seen
 _IDEALS = (0, (5, 5)), (5, (5, 5))
 _PREDICTIONS = (0, (5, 2, 1, 8)), (8, (5, 2, 1, 8))
+_Entry = tuple[Artist, str]
 _MOST_LETTERS = 36  # of a name in the legend
 
 
@@ -43,7 +46,6 @@ def figure_compare(slopes: tuple[xr.Dataset, xr.Dataset], names: tuple[str, str]
             predicted, color=colour, linestyle=_PREDICTIONS[number],
             label=f"prediction {predicted:.2f} mrad/nm",
         )  # fmt: skip
-        mark_points(axes, diameter, slope, one.get("fringe_status"))
         shown += [slope.values, ideal.values]
     values = np.concatenate(shown)
     finite = values[np.isfinite(values)]
@@ -53,9 +55,21 @@ def figure_compare(slopes: tuple[xr.Dataset, xr.Dataset], names: tuple[str, str]
     axes.set_xlabel(label(slopes[0]["diameter"]))
     axes.set_ylabel(label(slopes[0]["phase_slope"], "phase slope"))
     axes.set_title("Phase slope of two runs")
-    # beside each other, column by column
-    figure.legend(loc="outside lower center", ncols=2, handlelength=3)
+    handles, labels = axes.get_legend_handles_labels()
+    for one in slopes:
+        mark_points(axes, one["diameter"], one["phase_slope"], one.get("fringe_status"))
+    both = axes.get_legend_handles_labels()
+    marks = list(zip(*(entries[len(labels) :] for entries in both), strict=True))
+    columns = _columns(list(zip(handles, labels, strict=True)), marks)
+    figure.legend(*zip(*columns, strict=True), loc="outside lower center", ncols=2, handlelength=3)
     return figure
+
+
+def _columns(curves: list[_Entry], marks: list[_Entry]) -> list[_Entry]:
+    """Return a legend's entries column by column: each run's curves, and marks below both."""
+    half = len(curves) // 2
+    blank: list[_Entry] = [(Line2D([], [], linestyle="none"), "")] * (len(marks) % 2)
+    return [*curves[:half], *marks[::2], *curves[half:], *marks[1::2], *blank]
 
 
 def _shortened(name: str) -> str:
