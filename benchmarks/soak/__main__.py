@@ -2,14 +2,16 @@
 
 Run by `make soak`, which writes docs/reliability.md:
 
-    python -m soak [--minutes M] [--stops N] [--seed TEXT] [--write]
+    python -m soak [--minutes M] [--stops N] [--jobs N] [--seed TEXT] [--write]
 """
 
 import argparse
 import sys
 import tempfile
+import threading
 import time
-from itertools import islice
+from concurrent.futures import ThreadPoolExecutor
+from itertools import count, islice
 from pathlib import Path
 from random import Random
 from signal import SIGKILL, SIGTERM
@@ -21,6 +23,7 @@ from soak.page import Found, first_line
 from soak.runs import Run, Seen, differing, filled, moments, small_disk, two_at_once
 
 ROOT = Path(__file__).parents[2]
+_LOCK = threading.Lock()
 _STOPS = 9  # of one run at most, which else would never come to its end
 _EVERY = 6  # rounds, of which one has two runs at once, and another a full disk
 
@@ -30,21 +33,29 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, prog="python -m soak")
     parser.add_argument("--minutes", type=float, default=20.0, help="begin no round after (20)")
     parser.add_argument("--stops", type=int, help="end once each signal has hit so many runs")
+    parser.add_argument("--jobs", type=int, default=1, help="rounds at once (1)")
     parser.add_argument("--seed", default="octsim", help="of all that is drawn")
     parser.add_argument("--write", action="store_true", help="write docs/reliability.md")
     asked = parser.parse_args()
     on_signal(SIGTERM, lambda *_: sys.exit("stopped"))  # folders and small disks go
     found, began = Found(asked.seed), time.monotonic()
-    number = 0
-    while True:
-        found.minutes = (time.monotonic() - began) / 60
-        enough = asked.stops and min(found.stops.values(), default=0) >= asked.stops
-        if enough or found.minutes > asked.minutes:
-            break
-        number += 1
-        with tempfile.TemporaryDirectory(prefix="octsim-soak-") as name:
-            one_round(Path(name), Random(f"{asked.seed} {number}"), number, found)
-        print(f"{number}: {found.stops}, {len(found.wrong)} wrong", flush=True)
+    numbers = count(1)
+
+    def rounds() -> None:
+        while True:
+            with _LOCK:
+                number = next(numbers)
+                found.minutes = (time.monotonic() - began) / 60
+                enough = asked.stops and min(found.stops.values(), default=0) >= asked.stops
+            if enough or found.minutes > asked.minutes:
+                return
+            with tempfile.TemporaryDirectory(prefix="octsim-soak-") as name:
+                one_round(Path(name), Random(f"{asked.seed} {number}"), number, found)
+            print(f"{number}: {found.stops}, {len(found.wrong)} wrong", flush=True)
+
+    with ThreadPoolExecutor(asked.jobs) as pool:
+        for ended in [pool.submit(rounds) for _ in range(asked.jobs)]:
+            ended.result()
     print(*found.lines(), sep="\n")
     if asked.write:
         write_part(ROOT / "docs" / "reliability.md", "soak", found.lines())
@@ -69,19 +80,21 @@ def one_round(folder: Path, draw: Random, number: int, found: Found) -> None:
         wrong.say(f"{signal.name} after {after:.2f} s", stop.wrong)
         if not stop.hit:
             break
-        found.stops[signal.name] = found.stops.get(signal.name, 0) + 1
-        if signal != SIGKILL:
-            longest = max(stop.seconds, found.longest.get(signal.name, 0.0))
-            found.longest[signal.name] = longest
+        with _LOCK:
+            found.stops[signal.name] = found.stops.get(signal.name, 0) + 1
+            if signal != SIGKILL:
+                longest = max(stop.seconds, found.longest.get(signal.name, 0.0))
+                found.longest[signal.name] = longest
     _go_on(stopped, right, wrong, found)
     if number % _EVERY == 0:
         pair = Run(folder / "one", config), Run(folder / "other", config)
         every, cleared = two_at_once(*pair, folder / "cache")
-        found.together, found.cleared = found.together + 1, found.cleared + cleared
+        with _LOCK:
+            found.together, found.cleared = found.together + 1, found.cleared + cleared
         for one in every:
             wrong.say("two at once", one.wrong or ("" if one.status == 0 else _told(one)))
         for run in pair:
-            found.compared += 1
+            _compared(found)
             wrong.say("two at once", ", ".join(differing(run.results(), right)))
     if number % _EVERY == _EVERY // 2:
         with small_disk(folder / "disk") as there:
@@ -113,7 +126,7 @@ def _go_on(run: Run, right: dict[str, bytes], wrong: _Wrong, found: Found) -> No
     """Run the same command again, and compare."""
     seen = run.whole()
     wrong.say("the same command again", seen.wrong or ("" if seen.status == 0 else _told(seen)))
-    found.compared += 1
+    _compared(found)
     wrong.say("the same command again", ", ".join(differing(run.results(), right)))
 
 
@@ -121,12 +134,18 @@ def _told(seen: Seen) -> str:
     return f"status {seen.status}: " + "\n".join(seen.screen)
 
 
+def _compared(found: Found) -> None:
+    with _LOCK:
+        found.compared += 1
+
+
 def _count(found: Found, config: Drawn) -> None:
     scheme = config.overlay["tracing"]["scheme"]
-    found.configs += 1
-    found.schemes[scheme] = found.schemes.get(scheme, 0) + 1
-    found.grids += "grid" in config.overlay
-    found.scattered += config.scattered
+    with _LOCK:
+        found.configs += 1
+        found.schemes[scheme] = found.schemes.get(scheme, 0) + 1
+        found.grids += "grid" in config.overlay
+        found.scattered += config.scattered
 
 
 if __name__ == "__main__":

@@ -96,9 +96,9 @@ class Run:
         It is over when none of its processes is left.
         """
         terminal = self.start()
-        until = time.monotonic() + after
-        while time.monotonic() < until and not terminal.has_ended():
-            time.sleep(_LOOK)
+        # before that the command is Python alone, which ends without a word of octsim's
+        terminal.until(lambda: terminal.has_ended() or _handles(terminal.pid, SIGTERM))
+        _wait(terminal, after)
         began = time.monotonic()
         if number == SIGKILL:
             for process in processes_in(self.folder):
@@ -165,9 +165,7 @@ def small_disk(folder: Path) -> Iterator[bool]:
 def filled(run: Run, disk: Path, after: float) -> Seen:
     """Start a run, fill its disk some seconds after, and make room again once it has ended."""
     terminal, file = run.start(), disk / "filling"
-    until = time.monotonic() + after
-    while time.monotonic() < until and not terminal.has_ended():
-        time.sleep(_LOOK)
+    _wait(terminal, after)
     with suppress(OSError), file.open("wb", buffering=0) as stream:
         for size in (2**20, 2**12):
             with suppress(OSError):
@@ -184,6 +182,21 @@ def differing(results: Mapping[str, bytes], right: Mapping[str, bytes]) -> list[
     """Return the names of files that are not as they should be, or not there."""
     names = sorted({*results, *right})
     return [name for name in names if results.get(name) != right.get(name)]
+
+
+def _wait(terminal: Terminal, seconds: float) -> None:
+    until = time.monotonic() + seconds
+    while time.monotonic() < until and not terminal.has_ended():
+        time.sleep(_LOOK)
+
+
+def _handles(process: int, number: Signals) -> bool:
+    """Return whether a process handles a signal itself, as Linux tells it."""
+    with suppress(OSError):
+        for line in Path(f"/proc/{process}/status").read_text().splitlines():
+            if line.startswith("SigCgt:"):
+                return bool(int(line.split()[1], 16) >> (number - 1) & 1)
+    return False
 
 
 def _done(command: list[str]) -> bool:

@@ -18,7 +18,13 @@ from typing import Any
 from octsim.base.carried import workflow_folder
 from octsim.base.errors import OctsimError, not_installed
 from octsim.base.say import WORDS
-from octsim.cli.stopped import COMMAND, on_signals, say_stopped, stops_at_signals
+from octsim.cli.stopped import (
+    COMMAND,
+    SIGNALS,
+    on_signals,
+    say_stopped,
+    stops_at_signals,
+)
 
 _FORMS = (".yaml", ".yml", ".json")
 _MORE_TARGETS = ("all", "figures", "animation", "archive")
@@ -180,6 +186,8 @@ class _Running:
             self._send(signal.SIGKILL)
         status = self._process.wait()
         if not self._stopped:
+            for one in SIGNALS:  # there is nothing left to stop: a run that is whole ends as one
+                signal.signal(one, signal.SIG_IGN)
             return status
         self._send(signal.SIGKILL)  # what is left of it
         say_stopped()

@@ -36,6 +36,16 @@ except BaseException:
     print("not reached")
 """
 
+WHOLE = """
+import os, signal, sys
+from octsim.cli.run import _Running
+status = _Running([sys.executable, "-c", ""], [], "").ended()
+os.kill(os.getpid(), int(sys.argv[1]))
+# a handler of its own would be taken away before the process has ended
+print(signal.getsignal(int(sys.argv[1])) is signal.SIG_IGN)
+sys.exit(status)
+"""
+
 
 def begun(code: str, **environment: str) -> tuple["subprocess.Popen[str]", str]:
     process = subprocess.Popen(
@@ -72,3 +82,11 @@ def test_a_process_whose_octsim_run_has_gone_ends_in_silence() -> None:
     process, _ = begun(AT_ONCE, OCTSIM_COMMAND=str(os.getppid()))
     _, said = process.communicate()
     assert (process.returncode, said) == (128 + signal.SIGTERM, "")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_run_that_is_whole_ends_as_one_whatever_signal_comes_late(number: signal.Signals) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", WHOLE, str(int(number))], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "True\n", "")
