@@ -10,6 +10,7 @@ import signal
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterable
 from types import FrameType
 from typing import Any, NoReturn
@@ -83,6 +84,8 @@ def stops_by_cancelling() -> None:
 def _end(number: int) -> NoReturn:
     """End this process; folders of temporary files go as in any end."""
     atexit.unregister(_end)
+    # this may be in the midst of what takes warnings for errors: each folder would be a traceback
+    warnings.simplefilter("ignore")
     atexit._run_exitfuncs()
     if _Line.is_said_here:
         say_stopped()

@@ -78,6 +78,14 @@ def test_elsewhere_all_ends_at_once_and_temporary_folders_go(number: signal.Sign
         time.sleep(0.02)
 
 
+def test_where_warnings_are_errors_the_line_stands_alone_too() -> None:
+    process, words = begun(f"import warnings; warnings.simplefilter('error'){AT_ONCE}")
+    process.send_signal(signal.SIGTERM)
+    _, said = process.communicate()
+    assert said.splitlines() == [LINE]
+    assert not Path(words.split()[1]).exists()
+
+
 def test_a_process_whose_octsim_run_has_gone_ends_in_silence() -> None:
     process, _ = begun(AT_ONCE, OCTSIM_COMMAND=str(os.getppid()))
     _, said = process.communicate()
