@@ -180,15 +180,18 @@ def threads_of(rows: tuple[Stage, ...]) -> int:
     return max(1, CORES // 2) if rows[0].traces and not rows[0].after else CORES
 
 
-def needs(*stages: str) -> dict[str, Callable[[object, int], int]]:
+def needs(*stages: str) -> dict[str, Callable[[object, int, int], int]]:
     """Return what a job asks a cluster for: with a margin, and more each time it is tried."""
     cost = estimate.of(*stages)
-    megabytes = math.ceil(600 + 1.5e-6 * cost.memory_bytes)  # and two snakemakes around it
     of = max((SHARES.get(stage, 1) for stage in stages), default=1)
     minutes = math.ceil(60 + 3 * cost.cpu_seconds / of / 60)
+
+    def megabytes(threads: int) -> int:
+        return math.ceil(600 + 1.5e-6 * cost.memory(threads))  # and two snakemakes around it
+
     return {
-        "mem_mb": lambda _, attempt: attempt * megabytes,
-        "runtime": lambda _, attempt: attempt * minutes,
+        "mem_mb": lambda _, threads, attempt: attempt * megabytes(threads),
+        "runtime": lambda _, threads, attempt: attempt * minutes,
     }
 
 
@@ -262,8 +265,12 @@ rule share:
     log:
         f"{FOLDER}/logs/shares/{{stage}}-{{number}}-of-{{of}}.log",
     resources:
-        mem_mb=lambda wildcards, attempt: needs(wildcards.stage)["mem_mb"](wildcards, attempt),
-        runtime=lambda wildcards, attempt: needs(wildcards.stage)["runtime"](wildcards, attempt),
+        mem_mb=lambda wildcards, threads, attempt: needs(wildcards.stage)["mem_mb"](
+            wildcards, threads, attempt
+        ),
+        runtime=lambda wildcards, threads, attempt: needs(wildcards.stage)["runtime"](
+            wildcards, threads, attempt
+        ),
     params:
         made_from=lambda wildcards: made_from_rows((CATALOG[wildcards.stage],)),
     message:

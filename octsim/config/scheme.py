@@ -67,7 +67,7 @@ def point_cost(config: Config) -> PointCost:
     if pieces := pieces_of_tree(config):
         cost = of_tree(cost, pieces)
     if sampled(config):
-        cost = cost._replace(size=cost.size + SAMPLE_BYTES * config.spectrum.samples)
+        cost = cost._replace(size=cost.size + SAMPLE_BYTES * config.spectrum.samples, summed=0.0)
     times = scheme.by_wavenumber if way_varies(config) else SAMPLED if sampled(config) else 1.0
     return cost._replace(seconds=times * cost.seconds)
 

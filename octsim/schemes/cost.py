@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 _RAY_BYTES = 32  # of the four numbers that are kept of a ray
+_DETECTED = 0.18  # arrivals of a launched ray that are detected
 
 SAMPLE_BYTES = 72
 """Of a sample at which the field of rays is kept, with up to four fields."""
@@ -63,7 +64,9 @@ class PointCost(NamedTuple):
     paths: int
     """Light paths in it, about."""
     memory: float
-    """Bytes to work in, beyond those of any process."""
+    """Bytes that each thread has to work in, beyond those of any process."""
+    summed: float = 0.0
+    """Rays of it that are summed at each wavenumber; none where a field is kept."""
 
 
 class Additions(NamedTuple):
@@ -84,11 +87,11 @@ class Additions(NamedTuple):
 
 
 def of_rays(options: Mapping[str, Any], _diameter: float) -> PointCost:
-    """Return what counted rays take."""
+    """Return what counted rays take; within a factor of two from 10³ to 10⁷ of them."""
     rays = options["rays"]
     return PointCost(
-        size=_RAY_BYTES * (1 + 0.18 * rays), seconds=1.3e-4 + 8.8e-7 * rays, paths=40,
-        memory=600.0 * rays,
+        size=_RAY_BYTES * (1 + _DETECTED * rays), seconds=1.3e-4 + 8.8e-7 * rays, paths=40,
+        memory=115.0 * rays, summed=_DETECTED * rays,
     )  # fmt: skip
 
 
@@ -124,8 +127,9 @@ def of_tree(cost: PointCost, pieces: float) -> PointCost:
     """Return what counted rays take whose trees have so many pieces, and not the thesis's."""
     times = pieces / _PIECES
     return cost._replace(
-        size=cost.size * times, seconds=cost.seconds * times, memory=cost.memory * times
-    )
+        size=cost.size * times, seconds=cost.seconds * times, memory=cost.memory * times,
+        summed=cost.summed * times,
+    )  # fmt: skip
 
 
 def of_waves(options: Mapping[str, Any], diameter: float) -> PointCost:
@@ -146,9 +150,10 @@ def of_waves(options: Mapping[str, Any], diameter: float) -> PointCost:
 def of_paths(options: Mapping[str, Any], _diameter: float) -> PointCost:
     """Return what light paths take that are integrated to an accuracy."""
     digits = -math.log10(options["accuracy"])
+    rays = 45 * 10 ** (0.18 * digits)
     return PointCost(
-        size=_RAY_BYTES * 45 * 10 ** (0.18 * digits), seconds=4.7e-4 * 10 ** (0.145 * digits),
-        paths=12, memory=0.0,
+        size=_RAY_BYTES * rays, seconds=4.7e-4 * 10 ** (0.145 * digits), paths=12, memory=0.0,
+        summed=rays,
     )  # fmt: skip
 
 

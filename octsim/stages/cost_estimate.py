@@ -18,11 +18,13 @@ from octsim.config.scheme import point_cost, rate_name, scheme_of
 from octsim.config.tree import paths_by_digits
 from octsim.datasets.catalog import CATALOG
 from octsim.datasets.keys import stage_axes, stages_of
-from octsim.datasets.stage import RAYS, Stage
+from octsim.datasets.stage import RAYS, SUMMING, Stage
 from octsim.instrument.point_store import open_store
 from octsim.schemes.cost import PointCost
 
 _SUMMING = 1e-7  # s a sample, of summing a spectrum
+_RAY_SUMMING = 1.6e-9  # s a sample, of each ray that is summed
+_LIGHT_MEMORY = 4.0  # times the bytes of a point's light, where that is read to be summed
 _PATH_BYTES = 40  # of what is kept of each path of a point
 _JOB_BYTES = 3e8  # of a process with its libraries, compiled code and blocks
 _SAMPLE_MEMORY = 1000.0  # bytes, of each sample of the spectra in a block
@@ -41,7 +43,9 @@ class Cost(NamedTuple):
     disk_bytes: float = 0.0
     """Of its datasets."""
     memory_bytes: float = _JOB_BYTES
-    """Of its process."""
+    """Of its process, with one thread."""
+    thread_bytes: float = 0.0
+    """Of each thread more."""
 
     def and_also(self, other: "Cost") -> "Cost":
         """Return what two take, one after the other."""
@@ -50,14 +54,19 @@ class Cost(NamedTuple):
             self.cpu_seconds + other.cpu_seconds,
             self.disk_bytes + other.disk_bytes,
             max(self.memory_bytes, other.memory_bytes),
+            max(self.thread_bytes, other.thread_bytes),
         )
 
     def times(self, count: int) -> "Cost":
         """Return what as many alike take, one after the other."""
         return Cost(
             count * self.points, count * self.cpu_seconds, count * self.disk_bytes,
-            self.memory_bytes,
+            self.memory_bytes, self.thread_bytes,
         )  # fmt: skip
+
+    def memory(self, threads: int) -> float:
+        """Return the bytes of its process with some threads."""
+        return self.memory_bytes + (threads - 1) * self.thread_bytes
 
 
 class RunEstimate(NamedTuple):
@@ -107,9 +116,10 @@ def estimate(config: Config, measured: Callable[[str, PointCost], PointCost]) ->
 
     def traced(of: Config, row: Stage, *, sums: bool) -> Cost:
         count, cost = math.prod(row.points(of) if row.points else (0,)), rate(of)
-        summing = _SUMMING * of.spectrum.samples if sums else 0.0
+        summing = (_SUMMING + _RAY_SUMMING * cost.summed) * of.spectrum.samples if sums else 0.0
         disk = 0.0 if row.sums else count * (cost.size + _PATH_BYTES * cost.paths)
-        return Cost(count, count * (cost.seconds + summing), disk, _JOB_BYTES + cost.memory)
+        seconds, memory = count * (cost.seconds + summing), _JOB_BYTES + cost.memory
+        return Cost(count, seconds, disk, memory, cost.memory)
 
     def cost_of(row: Stage, of: Config) -> Cost:
         if row.traces:
@@ -119,8 +129,14 @@ def estimate(config: Config, measured: Callable[[str, PointCost], PointCost]) ->
             return cost
         values = of.sweep.diameters.num * of.spectrum.samples
         seconds, size = row.per_sample
-        memory = _JOB_BYTES + _SAMPLE_MEMORY * of.spectrum.samples
-        return Cost(0, seconds * values, size * values, memory)
+        memory = _SAMPLE_MEMORY * of.spectrum.samples
+        if SUMMING in row.reads:
+            light = rate(of)
+            seconds, memory = (
+                seconds + _RAY_SUMMING * light.summed,
+                memory + _LIGHT_MEMORY * light.size,
+            )
+        return Cost(0, seconds * values, size * values, _JOB_BYTES + memory, memory)
 
     @functools.cache
     def kinds(varied: tuple[str, ...]) -> list[tuple[Config, int]]:
