@@ -3,6 +3,7 @@
 import datetime as dt
 import json
 import os
+import uuid
 from collections.abc import Mapping, Sequence
 from operator import attrgetter
 from typing import Any
@@ -13,7 +14,12 @@ from octsim.base.errors import ArchiveError, not_installed
 from octsim.config.archive import ArchiveConfig
 from octsim.config.models import Config
 
-_VERSION = "1.2"
+_VERSION = "1.1"
+"""Of RO-Crate: that which the profile extends."""
+PROFILE = "https://w3id.org/ro/wfrun/process/0.5"
+"""What the metadata conform to besides: Process Run Crate, of programs and what they made."""
+_TERMS = {"sha256": "http://schema.org/sha256"}
+"""Of schema.org, that RO-Crate 1.1 does not name yet."""
 _EPOCH = "SOURCE_DATE_EPOCH"
 NO_DAY = "1980-01-01"
 """Of publication, where none is given: the day that the zip has of every file."""
@@ -79,15 +85,19 @@ def metadata(
         raise not_installed("rocrate", "archive") from None
 
     crate = ROCrate(version=_VERSION)
+    crate.metadata.extra_terms = dict(_TERMS)
     root = crate.root_dataset
+    profile = {"@type": "CreativeWork", "name": "Process Run Crate", "version": "0.5"}
+    root["conformsTo"] = crate.add(ContextEntity(crate, PROFILE, profile))
     given = config.archive
     root["name"], root["description"] = title_of(config), description_of(given)
     root["datePublished"] = _day_of(given)
     license_ = f"https://spdx.org/licenses/{given.license}"
     named = {"@type": "CreativeWork", "name": given.license, "identifier": given.license}
     root["license"] = crate.add(ContextEntity(crate, license_, named))
-    if given.creators:
-        root["creator"] = _creators(crate, given)
+    people = _creators(crate, given)
+    if people:
+        root["creator"] = people
     files: dict[str, Any] = {}
     for item in sorted(items, key=attrgetter("name")):
         properties: dict[str, Any] = {
@@ -107,15 +117,30 @@ def metadata(
     made_by: dict[str, list[Any]] = {}
     for stage, origin in origins_of(items).items():
         made_by.setdefault(origin.octsim_version, []).append(files[f"{stage}.nc"])
+    actions = []
     for version, datasets in sorted(made_by.items()):
         program = {"name": "octsim", "softwareVersion": version}
         octsim = crate.add(SoftwareApplication(crate, f"#octsim-{version}", program))
-        about = {"name": f"octsim {version} computes the datasets of the run {config.run}"}
-        action = crate.add_action(octsim, f"#run-{version}", [files[CONFIG]], datasets, about)
+        about = {
+            "name": f"octsim {version} computes the datasets of the run {config.run}",
+            "description": f"octsim run {CONFIG}",
+        }
+        made = [digests[one.id] for one in datasets]
+        action = crate.add_action(octsim, _execution(made), [files[CONFIG]], datasets, about)
         action["actionStatus"] = {"@id": "http://schema.org/CompletedActionStatus"}
+        if people:
+            action["agent"] = people
+        actions.append(action)
+    if actions:
+        root["mentions"] = actions
     graph = crate.metadata.generate()
     graph["@graph"].sort(key=lambda entity: str(entity["@id"]))
     return (json.dumps(graph, indent=2, sort_keys=True, ensure_ascii=False) + "\n").encode()
+
+
+def _execution(digests: Sequence[str]) -> str:
+    """Return what identifies an execution: its results do, so that an archive is the same bytes."""
+    return uuid.uuid5(uuid.NAMESPACE_URL, f"{PROFILE}#{' '.join(sorted(digests))}").urn
 
 
 def _creators(crate: Any, given: ArchiveConfig) -> list[Any]:
