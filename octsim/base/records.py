@@ -33,11 +33,18 @@ def layout(of: type, **shapes: "tuple[int, ...] | np.dtype[Any]") -> "np.dtype[A
         if hasattr(np.record, name):
             raise ValueError(f"{of.__name__}.{name}: numpy's records have another {name}")
         if isinstance(shape, tuple):
-            number = np.dtype(get_args(get_args(kind)[1])[0])
+            number = _number_of(kind)
             fields.append((name, _ARRAYS.get(number, number), shape))
         else:
             fields.append((name, np.dtype(kind) if shape is None else shape))
     return np.dtype(fields, align=True)
+
+
+def _number_of(kind: Any) -> "np.dtype[Any]":
+    """Return the number of an annotation NDArray[number]."""
+    given = get_args(kind)
+    # ndarray[shape, dtype[number]]; from numpy 2.5 on it stays as it is written
+    return np.dtype(get_args(given[1])[0] if len(given) > 1 else given[0])
 
 
 def room(dtype: "np.dtype[Any]") -> Any:

@@ -15,14 +15,14 @@ from pydantic import (
 
 from octsim.config.fields import Number, PositiveLength, Section, absent, listed
 from octsim.config.fields import key as _key
-from octsim.config.units import Quantity, parse, schema_of
+from octsim.config.units import Quantity, parse, schema_of, written_in
 
 FREQUENCY = Quantity("frequency", "a frequency", "Hz", ("20 kHz", "500 Hz"))
 Frequency = Annotated[
     float,
     BeforeValidator(partial(parse, FREQUENCY)),
     Field(gt=0),
-    PlainSerializer("{!r} Hz".format, return_type=str),
+    PlainSerializer(written_in("Hz"), return_type=str),
     WithJsonSchema(schema_of(FREQUENCY)),
 ]
 """A frequency in Hz, given as text with its unit."""

@@ -6,7 +6,7 @@ and a named type, as `LENGTH` and `Length` are.
 
 import difflib
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from decimal import Decimal, DecimalException
 from functools import cache, lru_cache, partial
 from typing import Annotated, Any, NamedTuple
@@ -228,25 +228,24 @@ def parse_length(text: object) -> float:
     return parse(LENGTH, text)
 
 
-def format_length(length: float) -> str:
-    """Write a length in µm as text that `parse_length` reads back to the same bits.
-
-    Examples
-    --------
-    >>> format_length(0.005)
-    '0.005 um'
-    """
-    return f"{length!r} {LENGTH.unit}"
-
-
 def parse_angle(text: object) -> float:
     """Read an angle such as ``"30 deg"``, in rad; see `parse`."""
     return parse(ANGLE, text)
 
 
-def format_angle(angle: float) -> str:
-    """Write an angle in rad as text that `parse_angle` reads back to the same bits."""
-    return f"{angle!r} {ANGLE.unit}"
+def written_in(unit: str) -> Callable[[float], str]:
+    """Return what writes a number in a unit as text that `parse` reads back to the same bits.
+
+    Examples
+    --------
+    >>> written_in("um")(0.005)
+    '0.005 um'
+    """
+    return lambda number: f"{number!r} {unit}"
+
+
+format_length, format_angle = written_in(LENGTH.unit), written_in(ANGLE.unit)
+"""Write a length in µm, and an angle in rad."""
 
 
 def schema_of(quantity: Quantity) -> dict[str, Any]:
@@ -278,7 +277,7 @@ Angle = Annotated[
 Attenuation = Annotated[
     float,
     BeforeValidator(partial(parse, ATTENUATION)),
-    PlainSerializer("{!r} 1/um".format, return_type=str),
+    PlainSerializer(written_in("1/um"), return_type=str),
     WithJsonSchema(schema_of(ATTENUATION)),
 ]
 """An attenuation in 1/µm, given as text with its unit."""
@@ -286,7 +285,7 @@ Attenuation = Annotated[
 Ratio = Annotated[
     float,
     BeforeValidator(partial(parse, RATIO)),
-    PlainSerializer("{!r} um/um".format, return_type=str),
+    PlainSerializer(written_in("um/um"), return_type=str),
     WithJsonSchema(schema_of(RATIO)),
 ]
 """A length per length, given as text with its unit."""
@@ -294,7 +293,7 @@ Ratio = Annotated[
 PerLength = Annotated[
     float,
     BeforeValidator(partial(parse, PER_LENGTH)),
-    PlainSerializer("{!r} 1/um".format, return_type=str),
+    PlainSerializer(written_in("1/um"), return_type=str),
     WithJsonSchema(schema_of(PER_LENGTH)),
 ]
 """A length per length squared in 1/µm, given as text with its unit."""

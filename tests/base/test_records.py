@@ -1,5 +1,7 @@
 """Records hold what their classes say, the same for Python and for compiled code."""
 
+from typing import Generic, TypeVar
+
 import numba
 import numpy as np
 import pytest
@@ -41,6 +43,21 @@ def test_fields_have_the_shapes_and_numbers_of_their_class() -> None:
     assert made.counts.shape == (7,)
     assert made.inner.values.shape == (2, 5)
     assert OUTER.isalignedstruct
+
+
+def test_arrays_are_understood_as_each_numpy_annotates_them() -> None:
+    """From 2.5 on NDArray[number] stays as it is written, before it is ndarray[shape, dtype]."""
+    written = TypeVar("written", bound=np.generic)
+
+    class Kept(Generic[written]):
+        pass
+
+    class Both:
+        early: np.ndarray[tuple[int, ...], np.dtype[np.int64]]
+        late: Kept[np.int64]
+
+    made = layout(Both, early=(2,), late=(2,))
+    assert made["early"] == made["late"] == np.dtype((np.int64, (2,)))
 
 
 def test_a_name_that_numpy_has_for_something_else_is_refused() -> None:
