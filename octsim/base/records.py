@@ -44,7 +44,8 @@ def _number_of(kind: Any) -> "np.dtype[Any]":
     """Return the number of an annotation NDArray[number]."""
     given = get_args(kind)
     # ndarray[shape, dtype[number]]; from numpy 2.5 on it stays as it is written
-    return np.dtype(get_args(given[1])[0] if len(given) > 1 else given[0])
+    number: np.dtype[Any] = np.dtype(get_args(given[1])[0] if len(given) > 1 else given[0])
+    return number
 
 
 def room(dtype: "np.dtype[Any]") -> Any:

@@ -3,6 +3,7 @@
 import json
 import re
 import sys
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -49,7 +50,7 @@ def refers(graph: Graph, value: Any, *kinds: str) -> bool:
     )
 
 
-REQUIRED = {
+REQUIRED: dict[tuple[str, str], Callable[[Graph, Any], object]] = {
     # what the profile asks of each property, MUST first: (type, property): check
     ("Dataset", "conformsTo"): lambda graph, value: (
         value == {"@id": PROFILE} and refers(graph, value, "CreativeWork")
