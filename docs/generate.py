@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from archive_part import archive_part
 from axons_page import axons_page
 from calibration_page import calibration_page
 from design_page import design_page
@@ -408,6 +409,8 @@ if __name__ == "__main__":
     (DOCS.parent / "config" / "schema.json").write_text(schema, encoding="utf-8")
     (DOCS / "config.md").write_text(config_reference(), encoding="utf-8")
     (DOCS / "results.md").write_text(results(), encoding="utf-8")
+    archives = DOCS / "archives.md"
+    archives.write_text(archive_part(archives.read_text("utf-8"), RESULTS), encoding="utf-8")
     (DOCS / "figures").mkdir(exist_ok=True)
     (DOCS / "stability.md").write_text(stability(), encoding="utf-8")
     (DOCS / "tradeoff.md").write_text(tradeoff(), encoding="utf-8")
