@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -79,7 +80,7 @@ def animate(scan: xr.Dataset, path: Path) -> None:
         writer.finish()
 
 
-def _lines(drawn: list[list[DrawnPath]]) -> dict[str, tuple[str, str]]:
+def _lines(drawn: list[list[DrawnPath]]) -> dict[str, tuple[str, Any]]:
     """Return the look of each path: own ones of those with most field over all frames."""
     field: dict[str, float] = {}
     for path in (path for frame in drawn for path in frame):
@@ -94,7 +95,7 @@ def _draw_rays(
     focus: float,
     window: tuple[float, float, float, float],
     drawn: list[DrawnPath],
-    lines: dict[str, tuple[str, str]],
+    lines: dict[str, tuple[str, Any]],
 ) -> None:
     draw_scene(axes, scene, focus, window, [(path, *lines[path.name]) for path in drawn])
     # the same in all frames, whatever is drawn in this one

@@ -12,7 +12,8 @@ from octsim.figures.style import title
 from octsim.instrument.drawn_rays import lit_aperture
 
 _DARK = "0.88"
-_MARKS = "o^sDvP*d"
+_MARKS = "osD^v<>P"
+"""Of the paths, so that they are told apart in grey."""
 _LONG = 45
 """Letters of a name that leave room for no other beside."""
 
@@ -27,7 +28,6 @@ def aperture_figure(spectra: xr.Dataset) -> Figure:
     axes = figure.subplots()
     labels = ["not detected", *lit.names, "on a fainter path"]
     colours = [_DARK, *(colour for colour, _ in LINES[: len(lit.names)]), "0.7"]
-    # colours that are alike, as in grey, are told apart by their marks
     marks = ["o", *_MARKS[: len(lit.names)], "x"]
     for number, (name, colour, mark) in enumerate(zip(labels, colours, marks, strict=True)):
         there = np.flatnonzero(lit.path == number - 1)

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Sequence
+from typing import Any
 
 import xarray as xr
 from matplotlib.axes import Axes
@@ -55,7 +56,7 @@ def draw_scene(
     scene: Scene,
     focus: float,
     window: tuple[float, float, float, float],
-    paths: Sequence[tuple[DrawnPath, str, str]],
+    paths: Sequence[tuple[DrawnPath, str, Any]],
 ) -> None:
     """Draw a scene cut by the plane y = 0, its focus, and rays of light paths, strongest first.
 
