@@ -48,7 +48,7 @@ test: .venv/dev
 	$(BIN)/pytest -n 2 -m "not trial"
 
 test-all: .venv/dev
-	$(BIN)/pytest -n 2
+	$(BIN)/pytest -n 2 --durations=40
 
 test-processors: .venv/dev
 	.ci/processors
