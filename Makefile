@@ -9,6 +9,7 @@
 # make site                                   the docs as a site, in docs/_site/
 # make bench                                  speed, as ratios within one run
 # make bench-sweeps                           what a grid of 1000 combinations takes, minutes
+# make bench-growth                           how cost grows with points, rays, combinations, minutes
 # make bench-peers                            beside other codes and methods, optional, minutes
 # make slurm                                  installs what runs on a cluster need besides
 # make test-slurm                             the same results on a private Slurm of one node
@@ -33,7 +34,7 @@ export GIVEN_FILE := $(value FILE)
 export GIVEN_INTO := $(value INTO)
 
 .PHONY: results archive reproduce test test-all test-processors lint format docs site bench bench-sweeps \
-	bench-peers kills soak mutants lock slurm test-slurm bench-slurm clean
+	bench-growth bench-peers kills soak mutants lock slurm test-slurm bench-slurm clean
 results: .venv/run
 	@exec $(BIN)/octsim run "$$GIVEN_CONFIG" --cores "$(CORES)"
 
@@ -114,6 +115,9 @@ bench: .venv/run
 
 bench-sweeps: .venv/run
 	$(BIN)/python benchmarks/large.py
+
+bench-growth: .venv/run
+	PYTHONPATH=benchmarks $(BIN)/python -P benchmarks/growth.py --write
 
 bench-peers: .venv-peers/rays/run .venv-peers/waves/run .venv-peers/cycles/run
 	OPENBLAS_NUM_THREADS=1 PYTHONPATH=benchmarks .venv-peers/rays/bin/python -m peers

@@ -57,7 +57,9 @@ class Stop(NamedTuple):
         if self.seen.status not in (0, 128 + self.number):
             return f"status {self.seen.status}: " + "\n".join(self.seen.screen)
         due = self.number != SIGKILL and self.hit
-        return "" if said == due else f"{said} lines that say stopped: {self.seen.screen}"
+        if said == due:
+            return ""
+        return f"{said} lines that say stopped; the last is: {' '.join(self.seen.screen[-1:])}"
 
 
 class Run:

@@ -9,7 +9,7 @@ from octsim.config.derive import parts_of
 from octsim.config.light import FibreMode
 from octsim.config.models import Config
 from octsim.config.tree import pieces_of_tree
-from octsim.schemes.cost import SAMPLE_BYTES, SAMPLED, PointCost, of_tree
+from octsim.schemes.cost import SAMPLE_BYTES, SAMPLED, SAMPLED_MEMORY, PointCost, of_tree
 from octsim.schemes.table import SCHEMES, Scheme
 
 
@@ -67,7 +67,8 @@ def point_cost(config: Config) -> PointCost:
     if pieces := pieces_of_tree(config):
         cost = of_tree(cost, pieces)
     if sampled(config):
-        cost = cost._replace(size=cost.size + SAMPLE_BYTES * config.spectrum.samples, summed=0.0)
+        size, memory = SAMPLE_BYTES * config.spectrum.samples, SAMPLED_MEMORY * cost.memory
+        cost = cost._replace(size=cost.size + size, memory=memory, summed=0.0)
     times = scheme.by_wavenumber if way_varies(config) else SAMPLED if sampled(config) else 1.0
     return cost._replace(seconds=times * cost.seconds)
 

@@ -13,6 +13,8 @@ _DETECTED = 0.18  # arrivals of a launched ray that are detected
 
 SAMPLE_BYTES = 72
 """Of a sample at which the field of rays is kept, with up to four fields."""
+SAMPLED_MEMORY = 9.0
+"""How many times the memory rays take while such fields are found."""
 SAMPLED = 4.0
 """How many times as long rays take that are the same at all wavenumbers, but not their fields."""
 

@@ -59,3 +59,9 @@ def test_rays_with_a_field_at_each_sample_are_not_summed_again() -> None:
     plain = stages_of(10**5)["spectra"]
     sampled = stages_of(10**5, polarisation={"input": "left"})["spectra"]
     assert sampled.cpu_seconds < 0.1 * plain.cpu_seconds
+
+
+def test_polarised_rays_take_the_memory_that_was_measured() -> None:
+    cost = stages_of(10**5, polarisation={"input": "left"})["detections"]
+    measured = 104e6  # beyond a process's own
+    assert measured / 2 <= cost.memory(1) - Cost().memory(1) <= 2 * measured
