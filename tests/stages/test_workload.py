@@ -2,6 +2,7 @@
 
 import pytest
 
+from octsim.config.grid import Combination
 from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.stages.scatter import Share
@@ -34,19 +35,13 @@ def test_a_million_points_are_as_many_jobs_as_their_time_asks_for(
 
 
 def test_ten_thousand_shares_have_each_block_once_and_about_as_much_to_do() -> None:
-    config = million(3000, 5)
-
-    class At:
-        pass
-
-    at = At()
-    at.config = config  # type: ignore[attr-defined]
+    at = Combination((0, 0), {}, million(3000, 5))
     blocks = [(at, slice(10 * n, 10 * n + 10)) for n in range(100_000)]
     found: list[object] = []
     counts = set()
     # a few of them, as each looks at all blocks; neighbours, and both ends
     for number in (1, 2, 5000, 5001, 9999, 10_000):
-        own = Share(number, 10_000).among(blocks, lambda _: 0.003)  # type: ignore[arg-type]
+        own = Share(number, 10_000).among(blocks, lambda _: 0.003)
         counts.add(len(own))
         assert own == blocks[10 * (number - 1) : 10 * number]
         found += own
