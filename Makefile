@@ -4,6 +4,7 @@
 # make test                                   the test suite, but for trials that take long
 # make test-all                               the whole of it
 # make test-processors                        tests of numbers, as other processors compute them
+# make test-pythons                           the wheel on other Pythons that are here
 # make lint                                   formatting, style, types and what may import what
 # make docs                                   the parts of docs/ that are made
 # make site                                   the docs as a site, in docs/_site/
@@ -33,8 +34,8 @@ export GIVEN_CONFIG := $(value CONFIG)
 export GIVEN_FILE := $(value FILE)
 export GIVEN_INTO := $(value INTO)
 
-.PHONY: results archive reproduce test test-all test-processors lint format docs site bench bench-sweeps \
-	bench-growth bench-peers kills soak mutants lock slurm test-slurm bench-slurm clean
+.PHONY: results archive reproduce test test-all test-processors test-pythons lint format docs site bench \
+	bench-sweeps bench-growth bench-peers kills soak mutants lock slurm test-slurm bench-slurm clean
 results: .venv/run
 	@exec $(BIN)/octsim run "$$GIVEN_CONFIG" --cores "$(CORES)"
 
@@ -53,6 +54,9 @@ test-all: .venv/dev
 
 test-processors: .venv/dev
 	.ci/processors
+
+test-pythons: .venv/dev
+	.ci/pythons
 
 lint: .venv/dev
 	$(BIN)/ruff check
