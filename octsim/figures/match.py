@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import ScalarFormatter
 
 from octsim.figures.marks import mark_clipped, mark_points
 from octsim.figures.style import BLACK, BLUE, ORANGE, title
@@ -64,6 +65,7 @@ def _draw_parameters(axes: Axes, found: xr.Dataset) -> None:
     mark_points(axes, off, rows, found["match_status"])
     axes.set_yticks(rows, [str(name) for name in found["parameter"].values])
     axes.set_xscale("symlog", linthresh=3)
-    axes.invert_yaxis()
+    axes.xaxis.set_major_formatter(ScalarFormatter())
+    axes.set_ylim(off.size - 0.5, -2.0)  # the first on top, below the legend
     axes.set_xlabel("From what is believed (tolerances)")
-    axes.legend()
+    axes.legend(loc="upper left", fontsize=9)

@@ -11,11 +11,13 @@ from octsim.config.derive import changed
 from octsim.config.load import load_config
 from octsim.config.maxwell import by_maxwell
 from octsim.config.models import Config
+from octsim.datasets.files import flags
 from octsim.figures.match import match_figure
 from octsim.figures.style import look
 from octsim.instrument.instrument import Instrument
 from octsim.studies.match.fit import PARAMETERS, Match, Observed, match
 from octsim.studies.match.study import _slope, doubts, match_of_spectra, summary
+from octsim.studies.responses.separability import Separability
 
 CONFIG = load_config({
     "tracing": {"scheme": "fullwave", "accuracy": 1e-3},
@@ -75,8 +77,11 @@ def dataset(**changes: float) -> xr.Dataset:
     believed = np.array([1.4, 0.005, 0.88, 1.0, 1.39])
     matched = believed + [changes.get(name, 0.0) for name in names]
     k = np.linspace(7, 9.6, 50)
+    told = np.full(5, Separability.SEPARABLE)
+    told[names.index("gap")] = Separability.NOT_SEPARABLE
     return xr.Dataset(
         {
+            "match_status": ("parameter", *flags(Separability, told)),
             "believed": ("parameter", believed), "matched": ("parameter", matched),
             "matched_error": ("parameter", np.full(5, 1e-4)),
             "match_tolerance": ("parameter", np.array([0.02, 0.002, 0.01, 0.05, 0.002])),
@@ -104,6 +109,8 @@ def test_it_is_drawn_beside_what_is_believed() -> None:
         figure = match_figure(dataset(neuron=0.001))
     labels = [one.get_text() for one in figure.axes[2].get_yticklabels()]
     assert labels == list(PARAMETERS)
+    said = figure.axes[2].get_legend_handles_labels()[1]
+    assert "doubtful: not separable" in said
 
 
 def test_a_scene_that_maxwell_is_not_solved_for_is_refused() -> None:
