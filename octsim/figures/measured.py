@@ -70,4 +70,7 @@ def _draw_phases(axes: Axes, found: xr.Dataset) -> None:
     )  # fmt: skip
     axes.set_xlabel("Time (ms)")
     axes.set_ylabel("Phase of the fringe (rad)")
-    axes.legend()
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.25 * (high - low))
+    # above all, as to look for the best place among very many marks takes long
+    axes.legend(loc="upper right", fontsize=8)
