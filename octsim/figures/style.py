@@ -1,6 +1,7 @@
 """One look for all figures: colour-blind safe, told apart in grey, units on every axis."""
 
 import json
+import logging
 import textwrap
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
@@ -27,6 +28,7 @@ PURPLE, VERMILION, SKY = "#CC79A7", "#D55E00", "#56B4E9"
 _COMPONENTS = (BLUE, ORANGE, PURPLE, VERMILION, SKY)
 _LETTERS = 110  # of a line below a figure
 _SYMBOLS = {"um": "µm", "um-1": "1/µm", "1": ""}
+logging.getLogger("fontTools").setLevel(logging.WARNING)  # each step of it is no word for a log
 _MANY = 5000
 _TOLD = "told"  # marks what is written beside a figure, for its caption
 # what a file would say of its making, and so be other bytes each time

@@ -1,5 +1,6 @@
 """Figures: drawn from stored datasets, labelled with units, the same bytes each time."""
 
+import logging
 from pathlib import Path
 from typing import Any
 
@@ -178,10 +179,11 @@ def test_diameters_without_a_peak_are_named_below_the_law(stages: dict[str, xr.D
 
 
 def test_text_in_a_pdf_is_text_and_no_date_stands_in_it(
-    stages: dict[str, xr.Dataset], tmp_path: Path
+    stages: dict[str, xr.Dataset], tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    with look():
+    with look(), caplog.at_level(logging.INFO):
         save(figure_of(FIGURES["figure_12"], stages, Processing()), tmp_path / "a.pdf")
+    assert not caplog.records  # a job's log has what is said, and of fonts there is nothing to say
     held = (tmp_path / "a.pdf").read_bytes()
     assert held.startswith(b"%PDF")
     # outlines of a TrueType font, that a reader maps to letters; not drawn shapes of letters
