@@ -334,7 +334,8 @@ rule figures:
 
 rule animation:
     input:
-        **{name: f"{FOLDER}/{name}.nc" for name in ANIMATION.of},
+        # a grid is refused at once, and nothing is traced for it
+        **{name: f"{FOLDER}/{name}.nc" for name in ANIMATION.of if not run.grid.varied},
     output:
         update(MOVING),
     log:
@@ -373,7 +374,7 @@ rule archive:
         rules.all.input,
         rules.report.output,
         BESIDE,
-        [MOVING] if Path(MOVING).is_file() else [],
+        [MOVING] if Path(MOVING).is_file() and not run.grid.varied else [],
     output:
         update(f"{FOLDER}/{run.run}.zip"),
     log:

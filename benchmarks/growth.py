@@ -14,12 +14,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import matplotlib.pyplot as plt
 from marked import write_part
+from matplotlib.figure import Figure
 
 from octsim.config.load import load_and_tell, load_config
 from octsim.datasets.files import opened
 from octsim.datasets.writer import write_stream
+from octsim.figures.style import look, save
 from octsim.stages.detections import detections
 from octsim.stages.spectra import spectra
 from octsim.studies.tradeoff.measured_cost import apart
@@ -129,7 +130,14 @@ def lines(found: dict[str, dict[int, Took]]) -> list[str]:
 
 def draw(found: dict[str, dict[int, Took]]) -> None:
     """Draw what each took over its size."""
-    figure, every = plt.subplots(1, len(found), figsize=(12, 3), sharey=True, layout="constrained")
+    with look():
+        figure = Figure(figsize=(12, 3))
+        _draw(figure, found)
+        save(figure, FIGURE)
+
+
+def _draw(figure: Figure, found: dict[str, dict[int, Took]]) -> None:
+    every = figure.subplots(1, len(found), sharey=True)
     for axes, (name, sizes) in zip(every, found.items(), strict=True):
         axes.loglog(list(sizes), [took.seconds for took in sizes.values()], "o-", color="black")
         last = max(sizes)
@@ -137,8 +145,6 @@ def draw(found: dict[str, dict[int, Took]]) -> None:
         axes.loglog([min(sizes), last], [rate * min(sizes), rate * last], ":", color="gray")
         axes.set_xlabel(name)
     every[0].set_ylabel("processor time (s)")
-    figure.savefig(FIGURE, metadata={"Date": None})
-    plt.close(figure)
 
 
 def main() -> None:

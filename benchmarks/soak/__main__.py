@@ -14,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import count, islice
 from pathlib import Path
 from random import Random
-from signal import SIGKILL, SIGTERM
+from signal import SIGINT, SIGKILL, SIGTERM
 from signal import signal as on_signal
 
 from marked import write_part
@@ -24,6 +24,7 @@ from soak.runs import Run, Seen, differing, filled, moments, small_disk, two_at_
 
 ROOT = Path(__file__).parents[2]
 _LOCK = threading.Lock()
+_STOPPED = threading.Event()
 _STOPS = 9  # of one run at most, which else would never come to its end
 _EVERY = 6  # rounds, of which one has two runs at once, and another a full disk
 
@@ -37,7 +38,8 @@ def main() -> int:
     parser.add_argument("--seed", default="octsim", help="of all that is drawn")
     parser.add_argument("--write", action="store_true", help="write docs/reliability.md")
     asked = parser.parse_args()
-    on_signal(SIGTERM, lambda *_: sys.exit("stopped"))  # folders and small disks go
+    for number in (SIGINT, SIGTERM):  # what has begun ends, and folders and small disks go
+        on_signal(number, lambda *_: _STOPPED.set())
     found, began = Found(asked.seed), time.monotonic()
     numbers = count(1)
 
@@ -47,7 +49,7 @@ def main() -> int:
                 number = next(numbers)
                 found.minutes = (time.monotonic() - began) / 60
                 enough = asked.stops and min(found.stops.values(), default=0) >= asked.stops
-            if enough or found.minutes > asked.minutes:
+            if enough or found.minutes > asked.minutes or _STOPPED.is_set():
                 return
             with tempfile.TemporaryDirectory(prefix="octsim-soak-") as name:
                 one_round(Path(name), Random(f"{asked.seed} {number}"), number, found)
@@ -78,7 +80,7 @@ def one_round(folder: Path, draw: Random, number: int, found: Found) -> None:
     for signal, after in islice(moments(draw, seconds), _STOPS):
         stop = stopped.stopped(signal, after)
         wrong.say(f"{signal.name} after {after:.2f} s", stop.wrong)
-        if not stop.hit:
+        if not stop.hit or _STOPPED.is_set():
             break
         with _LOCK:
             found.stops[signal.name] = found.stops.get(signal.name, 0) + 1
@@ -101,10 +103,9 @@ def one_round(folder: Path, draw: Random, number: int, found: Found) -> None:
             if there:
                 run = Run(folder / "disk" / "run", config)
                 seen = filled(run, folder / "disk", draw.uniform(0, seconds))
-                found.full, found.failed_full = (
-                    found.full + 1,
-                    found.failed_full + bool(seen.status),
-                )
+                with _LOCK:
+                    found.full += 1
+                    found.failed_full += bool(seen.status)
                 wrong.say("a full disk", seen.wrong)
                 _go_on(run, right, wrong, found)
 

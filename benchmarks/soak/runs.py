@@ -19,6 +19,8 @@ from terminal import Terminal, processes_in
 OCTSIM = (sys.executable, "-m", "octsim")
 STOPPED = "octsim: stopped"
 _LOOK = 0.02  # s, between looks
+_LAST = 60.0  # s, after the end of a command, by which all of its processes have ended
+_LEFT = "processes that go on"
 _DISK = 64  # MB, of a disk that fills
 _CACHE = Path(".octsim")
 
@@ -31,8 +33,9 @@ class Seen(NamedTuple):
 
     @property
     def wrong(self) -> str:
-        """What no command may show; empty if there is nothing of it."""
-        return "\n".join(self.screen) if any("Traceback" in line for line in self.screen) else ""
+        """What no command may show or leave behind; empty if there is nothing of it."""
+        wrong = any("Traceback" in line or line.startswith(_LEFT) for line in self.screen)
+        return "\n".join(self.screen) if wrong else ""
 
 
 class Stop(NamedTuple):
@@ -113,9 +116,7 @@ class Run:
             terminal.kill(number)
         seen = ended(terminal)
         took = time.monotonic() - began
-        while processes_in(self.folder):
-            time.sleep(_LOOK)
-        return Stop(number, seen, took)
+        return Stop(number, _alone(self.folder, seen), took)
 
     def share_cache(self, folder: Path) -> None:
         """Have its points in a folder of others too, without a word of it in the config."""
@@ -174,9 +175,8 @@ def filled(run: Run, disk: Path, after: float) -> Seen:
                 while True:
                     stream.write(bytes(size))
     seen = ended(terminal)
-    while processes_in(run.folder):
-        time.sleep(_LOOK)
-    file.unlink()
+    seen = _alone(run.folder, seen)
+    file.unlink(missing_ok=True)
     return seen
 
 
@@ -190,6 +190,16 @@ def _wait(terminal: Terminal, seconds: float) -> None:
     until = time.monotonic() + seconds
     while time.monotonic() < until and not terminal.has_ended():
         time.sleep(_LOOK)
+
+
+def _alone(folder: Path, seen: Seen) -> Seen:
+    """Wait for the last of a run's processes; one that goes on is not as it should be."""
+    until = time.monotonic() + _LAST
+    while left := processes_in(folder):
+        if time.monotonic() > until:
+            return seen._replace(screen=[*seen.screen, f"{_LEFT}: {left}"])
+        time.sleep(_LOOK)
+    return seen
 
 
 def _handles(process: int, number: Signals) -> bool:

@@ -85,7 +85,7 @@ def items_of(run: Run, config: Config) -> list[Item]:
     return [
         *datasets,
         *_figures(run, config),
-        *_animation(run),
+        *([] if config.grid.varied else _animation(run)),  # it is of a run without a grid
         *_report(run),
         Item(CONFIG, "config of the run, every key", text.encode(), "application/yaml"),
         Item(

@@ -38,6 +38,7 @@ def watched(things: Iterable[_Thing], count: int, what: str) -> Iterator[_Thing]
                     shown = True
             yield thing
     finally:
+        note("")
         if shown:
             print(CLEAR, end="", file=sys.stderr, flush=True)
 

@@ -131,9 +131,11 @@ def _draw(task: Task, folder: Path, config: Config) -> None:
 def _animate(task: Task, _folder: Path, config: Config) -> None:
     """Animate the focus scan of a run."""
     from octsim.base.named import named
+    from octsim.config.grid import without_grid
     from octsim.datasets.files import read
     from octsim.datasets.gallery import ANIMATION
 
+    config = without_grid(config, ANIMATION.name)
     sources = (read(Path(task.input[name]), name, config) for name in ANIMATION.of)
     named(ANIMATION.draw)(*sources, Path(next(iter(task.output.values()))))
 

@@ -73,6 +73,8 @@ def do(given: Namespace) -> int:
     _require_new("--output", output, given.config, config)
     if given.source is not None:
         _require_new("--source", given.source, given.config, config)
+        if given.source.resolve() == output.resolve():
+            raise ConfigError(f"--source: {output} given, which is --output too; give another name")
         write_source(config, given.source)
         print(f"{given.source}: the source, for spectrum.source")
     write_stream(measured.stream(config), output)

@@ -87,13 +87,12 @@ def run(given: argparse.Namespace) -> int:
     require_workflow()
     configs, targets = _told_apart(given.words)
     configs = configs or [str(workflow_folder() / "config" / "default.yaml")]
-    looked = TemporaryDirectory(prefix="octsim-looked-")
-    os.environ[FOLDER] = looked.name  # by the processes of the run it is not looked at again
-    config, _ = load_and_tell(*configs)
-    shown = "quiet" if given.quiet else "verbose" if given.verbose else ""
-    if not (shown or given.flags) and sys.stderr.isatty():
-        print("octsim: starting snakemake …", end="", file=sys.stderr, flush=True)
-    with looked:
+    with TemporaryDirectory(prefix="octsim-looked-") as looked:
+        os.environ[FOLDER] = looked  # by the processes of the run it is not looked at again
+        config, _ = load_and_tell(*configs)
+        shown = "quiet" if given.quiet else "verbose" if given.verbose else ""
+        if not (shown or given.flags) and sys.stderr.isatty():
+            print("octsim: starting snakemake …", end="", file=sys.stderr, flush=True)
         return _Running(_command(configs, targets, config.run, given), given.flags, shown).ended()
 
 

@@ -34,7 +34,8 @@ def edit_of(folder: Path, config: Config, planned: Collection[str]) -> str | Non
     from octsim.archive.run_folder import stage_and_config
 
     rows = {**jobs_of(config), **jobs(beside=True)}
-    remade = [name for name in (*rows, "figures", "report", "archive") if name in planned]
+    every = (*rows, "figures", "animation", "report", "archive")
+    remade = [name for name in every if name in planned]
     changes: dict[str, str] = {}
     there = False
     for row in (row for name in remade for row in rows.get(name, ())):

@@ -33,7 +33,8 @@ def light_remarks(config: Config) -> Iterator[str]:
 
 def _neuron_of_a_series(config: Config) -> Iterator[str]:
     """Say if a lab's neuron is none of those that the calibration is of."""
-    if config.expansion.series is None and config.measured.spectra is None:
+    given_none = config.expansion.series is None and config.measured.spectra is None
+    if given_none or config.expansion.several:  # which are by responses, of that diameter too
         return
     given, table = config.expansion.diameter, calibration_diameters(config).values()
     if not table[0] <= given <= table[-1]:

@@ -114,6 +114,8 @@ def mark_clipped(axes: Axes) -> None:
         if line.get_transform() != axes.transData:
             continue
         x, y = (np.asarray(values, float) for values in line.get_data())
+        # what an axis has no place for, as 0 of a log axis, leaves it nowhere
+        y = np.where(np.isfinite(scale.transform(y)) & np.isfinite(y), y, np.nan)
         for beyond, edge, marker in ((y > high, 1 - _EDGE, "^"), (y < low, _EDGE, "v")):
             if beyond.any():
                 level = scale.transform(np.array([high if marker == "^" else low]))[0]

@@ -109,10 +109,15 @@ def _require_another_name(key: str, file: str, at: str | None, spectra: str | No
             f"measured.{key}: {file} given, which is measured.spectra too; give a file of its "
             f"own, as of what was recorded without the sample, or {{at: /raw/{key}}}"
         )
-    if spectra is None or at.strip("/") == spectra.strip("/"):
+    if spectra is None:
         raise ConfigError(
-            f"measured.{key}: {at} of the file of spectra given, and measured.at "
-            f"{'is too' if spectra else 'does not say where the spectra are'}; give both names"
+            f"measured.{key}: {at} of the file of spectra given, and measured.at does not say "
+            "where in it the spectra are; give both names"
+        )
+    if at.strip("/") == spectra.strip("/"):
+        raise ConfigError(
+            f"measured.{key}: {at} of the file of spectra given, which is measured.at too; give "
+            "the name of what was recorded without the sample"
         )
 
 

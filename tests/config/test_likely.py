@@ -66,6 +66,14 @@ def test_an_effect_that_is_likely_not_meant_is_said(overlay: dict[str, Any], lin
         {"beam": {"waist": "0.2 um", "wavelength": "0.9 um"}},
         {"detector": {"falloff": "fibre"}},
         {"expansion": {"series": "a.csv", "diameter": "2 um"}},
+        {
+            "expansion": {
+                "series": "a.csv",
+                "diameter": "4.5 um",
+                "fit": ["diameter", "gap"],
+                "bands": [["650 nm", "750 nm"], ["750 nm", "900 nm"]],
+            }
+        },
         {"expansion": {"diameter": "4.5 um"}},
         {"scene": {"refractive_index": {"glass": "N-BK7", "water": "water"}}},
     ],

@@ -71,7 +71,7 @@ def test_a_dark_that_was_subtracted_is_not_asked_for(tmp_path: Path, lab: Lab) -
 @pytest.mark.parametrize(
     ("key", "given", "said"),
     [
-        ("dark", {"at": "/raw/spectra"}, "measured.dark: /raw/spectra of the file of spectra"),
+        ("dark", {"at": "/raw/spectra"}, "which is measured.at too; give the name"),
         ("reference", {"at": "/raw/none"}, "/raw/none"),
         ("dark", {"file": "dark.h5"}, "measured.dark: {file: dark.h5} given; it should be"),
         ("reference", {"at": "a", "unit": "nm"}, "given; it should be a file, as reference.csv"),
@@ -114,5 +114,7 @@ def test_import_writes_the_source_and_over_no_file_that_it_reads(
     assert (tmp_path / "source.csv").read_text().startswith("wavelength (nm),power\n650,")
     assert main([*of_all, "axis.csv"]) == 2
     assert capsys.readouterr().err.startswith("octsim: --source: axis.csv given, which is measured")
+    assert main([*of_all, "same.nc", "--output", "same.nc"]) == 2
+    assert capsys.readouterr().err.startswith("octsim: --source: same.nc given, which is --output")
     assert main([*command, "--source", "other.csv"]) == 2
     assert capsys.readouterr().err.startswith("octsim: measured.reference: not given, and --source")
