@@ -1,5 +1,6 @@
 """What all tests share."""
 
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -18,6 +19,9 @@ from octsim.studies.calibration.study import calibration
 settings.register_profile("octsim", derandomize=True, deadline=None)
 settings.load_profile("octsim")
 ROOT = Path(__file__).parent.parent
+# a suite that a shell begins with `&` would have its processes ignore it, and tests send it to them
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import xarray as xr
 
 import octsim
 from octsim.figures.phase_slope import figure_12
-from octsim.figures.style import look
+from octsim.figures.style import look, told_in
 from octsim.phase.fringe_status import FringeStatus
 from octsim.stages.fourier import PhaseStatus, doubts
 from octsim.stages.phase_slope import summary
@@ -105,7 +105,7 @@ def test_without_a_fringe_there_is_no_slope_and_the_status_says_why(
     assert summary(slopes).startswith("no phase slope")
     with look():
         drawn = figure_12(slopes)
-    assert status.name.lower() in drawn.get_supxlabel()
+    assert status.name.lower() in " ".join(told_in(drawn))
 
 
 @pytest.mark.parametrize("scheme", ["vogel", "paths"])

@@ -12,6 +12,8 @@ import pytest
 import yaml
 from checkout import TINY, Checkout
 
+from octsim.datasets.gallery import FORMS
+
 KILLS = int(os.environ.get("OCTSIM_KILLS", "4"))
 COMMAND = [sys.executable, "-m", "snakemake", "--configfile", "mine.yaml"]
 
@@ -66,7 +68,7 @@ def test_a_second_run_of_the_same_name_is_refused_and_another_is_not(tmp_path: P
     assert second.returncode != 0
     assert "octsim: another run is at work on results/tiny" in second.stderr
     assert other.returncode == 0, other.stderr
-    assert len(checkout.results()) == 2 * (9 + 20)
+    assert len(checkout.results()) == 2 * (9 + len(FORMS) * 11)  # datasets, and figures
 
 
 def test_a_results_folder_that_is_none_is_one_line(tmp_path: Path) -> None:

@@ -418,7 +418,7 @@ def test_an_estimate_is_printed_first_and_a_large_run_wants_to_be_confirmed(tmp_
     lines = [line for line in done.stderr.splitlines() if line.startswith("octsim: ")]
     assert lines[0].startswith("octsim: 4 combinations, at most 2000064 points to trace")
     assert "of processor time" in lines[0]
-    assert lines[1].startswith("octsim: budget.cpu_hours: 1 given, but this run takes about 1.")
+    assert lines[1].startswith("octsim: budget.cpu_hours: 1 given, but this run takes about 2.")
     assert not (tmp_path / "results").exists()
     # what is asked for counts, and a dry run takes nothing
     assert checkout.snakemake(large, "--dry-run").returncode == 0
