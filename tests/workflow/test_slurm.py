@@ -70,6 +70,12 @@ def run(checkout: Checkout, slurm: Mapping[str, str], *arguments: str) -> str:
     return said
 
 
+def in_full(checkout: Checkout) -> str:
+    """Give all that snakemake wrote of the runs in a folder, of which a terminal shows a part."""
+    logs = (checkout.folder / ".snakemake" / "log").glob("*.log")
+    return "".join(file.read_text(encoding="utf-8") for file in sorted(logs))
+
+
 def state_of(slurm: Mapping[str, str], job: str) -> str:
     command = ["squeue", "--states=all", "--noheader", f"--jobs={job}", "--format=%T"]
     done = subprocess.run(command, env=slurm, capture_output=True, text=True, check=True)
@@ -114,7 +120,7 @@ def troubled(
     subprocess.run(["scancel", caught(checkout, slurm, "waits")], env=slurm, check=True)
     said, _ = started.communicate()
     assert started.returncode == 0, said
-    return checkout, said
+    return checkout, in_full(checkout)
 
 
 def slurm_logs(checkout: Checkout, stage: str) -> list[str]:
@@ -159,9 +165,9 @@ def test_a_job_that_fails_each_time_keeps_the_old_dataset_and_a_rerun_resumes(
     at_start(checkout, "focus_law", "raise SystemExit(1)")
     again = ("--until", "focus_law", "--forcerun", "focus_law", "--restart-times", "0")
     broken = start(checkout, slurm, *PROFILE, *again)
-    said, _ = broken.communicate()
+    broken.communicate()
     assert broken.returncode != 0
-    assert "SLURM status is: 'FAILED'" in said
+    assert "SLURM status is: 'FAILED'" in in_full(checkout)
     assert checkout.results() == before
     script.write_text(plain)
     assert "focus_law" in checkout.would_run(TINY)  # what failed does not count as done
@@ -189,7 +195,7 @@ def test_a_scattered_stage_is_gathered_to_the_bits_of_one_job_whatever_becomes_o
     subprocess.run(["scancel", waiting], env=slurm, check=True)
     said, _ = started.communicate()
     assert started.returncode == 0, said
-    assert said.count("has been submitted with SLURM jobid") == 4  # one share of two again
+    assert in_full(there).count("has been submitted with SLURM jobid") == 4  # one share of two again
     assert there.results() == here.results()
     assert counts(there, "grid") == counts(here, "grid")
 
