@@ -195,7 +195,9 @@ def test_a_scattered_stage_is_gathered_to_the_bits_of_one_job_whatever_becomes_o
     subprocess.run(["scancel", waiting], env=slurm, check=True)
     said, _ = started.communicate()
     assert started.returncode == 0, said
-    assert in_full(there).count("has been submitted with SLURM jobid") == 4  # one share of two again
+    assert (
+        in_full(there).count("has been submitted with SLURM jobid") == 4
+    )  # one share of two again
     assert there.results() == here.results()
     assert counts(there, "grid") == counts(here, "grid")
 
