@@ -16,7 +16,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
-from drawn_points import ROOT, add_options, seeded, write_into
+from drawn_points import ROOT, add_options, seeded
+from marked import write_part
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
@@ -184,7 +185,7 @@ def main() -> None:
     ]
     print("\n".join(lines))
     if asked.write:
-        write_into(DOCS, lines)
+        write_part(DOCS, "accuracy", lines)
 
 
 if __name__ == "__main__":

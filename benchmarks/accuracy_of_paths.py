@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 from dense_grids import dense_field
-from drawn_points import ROOT, add_options, judged, seeded, write_into
+from drawn_points import ROOT, add_options, judged, seeded
+from marked import write_part
 
 from octsim.optics.detector import fibre_detector
 from octsim.optics.materials import Constant
@@ -122,7 +123,7 @@ def main() -> None:
     print("\n".join(lines))
     print(table[table.wrong | table.open | table.warned].to_string())
     if asked.write:
-        write_into(DOCS, lines)
+        write_part(DOCS, "accuracy", lines)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,6 @@
 import argparse
 import hashlib
 import subprocess
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,6 @@ import pandas as pd
 from octsim.schemes.light import AccuracyStatus
 
 ROOT = Path(__file__).parents[1]
-BEGIN, END = "<!-- accuracy: begin -->", "<!-- accuracy: end -->"
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -40,10 +38,3 @@ def judged(table: pd.DataFrame) -> pd.DataFrame:
         reached=reached, wrong=reached & surely, open=reached & ~right & ~surely,
         unsure=~reached & right, warned=~reached & ~right, understated=table.true > table.stated,
     )  # fmt: skip
-
-
-def write_into(docs: Path, lines: Sequence[str]) -> None:
-    """Replace what stands between the marks of a page."""
-    before, rest = docs.read_text(encoding="utf-8").split(BEGIN)
-    after = rest.split(END)[1]
-    docs.write_text(before + BEGIN + "\n" + "\n".join(lines) + "\n" + END + after, encoding="utf-8")

@@ -10,8 +10,9 @@ peer that can't be had is named there with the reason.
 import sys
 from collections.abc import Callable
 
+from marked import write_part
 from peers import blender, chances, claim, fdtd, partial_waves, ray_tracers, speed_ups
-from peers.others import ROOT, LeftOutError, put
+from peers.others import ROOT, LeftOutError
 
 PAGE = ROOT / "docs" / "peers.md"
 SECTIONS: dict[str, Callable[[], str]] = {
@@ -33,7 +34,7 @@ def main() -> None:
         except LeftOutError as error:
             text = f"Left out: {error}."
         print(f"{name}\n\n{text}\n", flush=True)
-        PAGE.write_text(put(PAGE.read_text(encoding="utf-8"), name, text), encoding="utf-8")
+        write_part(PAGE, name, [text])
 
 
 if __name__ == "__main__":
