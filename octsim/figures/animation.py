@@ -1,6 +1,5 @@
 """The focus scan as an animation: the scene with its rays, and the intensity, focus after focus."""
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +12,8 @@ from matplotlib.figure import Figure
 
 from octsim.base.errors import DatasetError
 from octsim.base.files import whole
-from octsim.config.derive import validated
 from octsim.figures.paths import LINES
+from octsim.figures.recorded import config_in
 from octsim.figures.scene import draw_scene, window_of
 from octsim.figures.style import BLUE, label, title, unit_of_intensity
 from octsim.figures.style import look as house_look
@@ -54,7 +53,7 @@ def animate(scan: xr.Dataset, path: Path) -> None:
         raise DatasetError(
             f"animation: focus_scan is over a grid of {over}; it is of one config: leave grid out"
         )
-    config = validated(json.loads(scan.attrs["config"]))
+    config = config_in(scan)
     diameter = float(scan["diameter"])
     scene = scene_of(config, diameter)
     chosen = np.linspace(0, scan.sizes["focus"] - 1, _FRAMES).round().astype(int)

@@ -1,13 +1,11 @@
 """The objective's aperture: where rays start, coloured by the light path that they take."""
 
-import json
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from octsim.config.derive import validated
 from octsim.figures.paths import LINES
+from octsim.figures.recorded import config_in, middle_of
 from octsim.figures.style import title
 from octsim.instrument.drawn_rays import lit_aperture
 
@@ -20,9 +18,7 @@ _LONG = 45
 
 def aperture_figure(spectra: xr.Dataset) -> Figure:
     """Draw the aperture at the middle diameter of a sweep, as the scene is drawn at it."""
-    config = validated(json.loads(spectra.attrs["config"]))
-    one = spectra.isel(diameter=spectra.sizes["diameter"] // 2)
-    diameter, focus = float(one["diameter"]), float(one["focus"])
+    config, (diameter, focus) = config_in(spectra), middle_of(spectra)
     lit = lit_aperture(config, diameter, focus)
     figure = Figure(figsize=(6.4, 7.2))
     axes = figure.subplots()

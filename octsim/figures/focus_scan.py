@@ -1,14 +1,12 @@
 """The intensity and the number of detected rays over the focus (figure 6)."""
 
-import json
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from octsim.config.derive import validated
 from octsim.figures.marks import mark_points
+from octsim.figures.recorded import config_in
 from octsim.figures.style import BLUE, ORANGE, SKY, label, tell, title, unit_of_intensity
 from octsim.instrument.build import scene_of
 from octsim.optics.scene import Cylinder
@@ -56,7 +54,7 @@ def _intensity(axes: Axes, scan: xr.Dataset) -> None:
 
 def _neuron(axes: Axes, scan: xr.Dataset) -> None:
     """Shade the heights between the lower and the upper side of each cylinder."""
-    config = validated(json.loads(scan.attrs["config"]))
+    config = config_in(scan)
     surfaces = scene_of(config, float(scan["diameter"])).surfaces
     cylinders = [one for one in surfaces if isinstance(one, Cylinder)]
     for number, one in enumerate(cylinders):

@@ -1,6 +1,5 @@
 """The scene to scale, with rays of its strongest light paths."""
 
-import json
 from collections.abc import Sequence
 from typing import Any
 
@@ -8,8 +7,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from octsim.config.derive import validated
 from octsim.figures.paths import LINES
+from octsim.figures.recorded import config_in, middle_of
 from octsim.figures.style import title
 from octsim.instrument.build import scene_of
 from octsim.instrument.drawn_rays import DrawnPath, drawn_rays
@@ -28,9 +27,7 @@ _LEAST = 0.4
 
 def scene_figure(spectra: xr.Dataset) -> Figure:
     """Draw the middle diameter of a sweep, cut by the plane y = 0, and rays on its light paths."""
-    config = validated(json.loads(spectra.attrs["config"]))
-    one = spectra.isel(diameter=spectra.sizes["diameter"] // 2)
-    diameter, focus = float(one["diameter"]), float(one["focus"])
+    config, (diameter, focus) = config_in(spectra), middle_of(spectra)
     scene = scene_of(config, diameter)
     window = window_of(scene, focus)
     figure = Figure(figsize=(6.4, 6.4))

@@ -1,6 +1,5 @@
 """The spectrum of one diameter, prepared for its Fourier transform (figure 8)."""
 
-import json
 from collections.abc import Callable, Mapping
 
 import numpy as np
@@ -8,8 +7,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from octsim.config.derive import validated
 from octsim.config.processing import Processing
+from octsim.figures.recorded import config_in
 from octsim.figures.style import BLACK, BLUE, SKY, label, tell, title
 from octsim.phase.fringe_status import FringeStatus, doubts_of
 from octsim.phase.transform import centred_by, prepared, windowed, without_source
@@ -33,7 +32,7 @@ def figure_8(spectra: xr.Dataset, processing: Processing) -> Figure:
     """Draw the steps of a spectrum's preparation (thesis fig. 8), as the run takes them."""
     spectrum = spectra.sel(diameter=DIAMETER, method="nearest")
     intensity = spectrum["intensity"].values
-    source = validated(json.loads(spectra.attrs["config"])).spectrum.power()
+    source = config_in(spectra).spectrum.power()
     bare = without_source(intensity, source)
     # the thesis's scale: the centred spectrum reaches from −1 to 1
     level = centred_by(bare, processing)
