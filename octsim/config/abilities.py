@@ -77,6 +77,8 @@ def asked_of_scheme(config: Config) -> Iterator[Asked]:
 
 def _effects(config: Config) -> Iterator[Asked]:
     objective, beam = config.objective, config.beam
+    if objective.immersion is not None:
+        yield Asked(Ability.ZERNIKE, "objective.immersion", objective.immersion)
     if objective.zernike.of:
         names = filter(None, map(zernike_name, objective.zernike.of))
         given = as_text(objective.model_dump(mode="json")["zernike"])
@@ -170,7 +172,7 @@ def as_far_as(scheme: Scheme, config: Config) -> Config:
     if Ability.APLANATIC in asked:
         objective = objective.model_copy(update={"apodisation": None})
     if {Ability.ZERNIKE, Ability.ODD_ALONG} & asked:
-        objective = objective.model_copy(update={"zernike": ZernikeConfig()})
+        objective = objective.model_copy(update={"zernike": ZernikeConfig(), "immersion": None})
     if Ability.FOCAL_SHIFT in asked:
         objective = objective.model_copy(update={"focal_shift": None})
     if Ability.POLARISATION in asked:

@@ -11,6 +11,7 @@ from octsim.base.remembered import remembered
 from octsim.config.abilities import beyond_scheme
 from octsim.config.bounds import bounded
 from octsim.config.following import fitted_diameters, scan_foci
+from octsim.config.immersion import impossible_immersion
 from octsim.config.likely import light_remarks
 from octsim.config.models import Config, FocusLine
 from octsim.config.ranges import DECIMALS, Range
@@ -87,6 +88,7 @@ def impossible(config: Config) -> Iterator[str]:
         yield from beyond_scheme(config)
         yield from impossible_tree(config)
         yield from _below_objective(config)
+        yield from impossible_immersion(config)
     band = config.spectrum.wavelength
     if not band.min < band.max:
         yield (

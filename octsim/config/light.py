@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, Discriminator, PlainSerializer, Tag, WithJ
 from octsim.config.effects import FocalShift, Zernike
 from octsim.config.fields import PositiveLength, PositiveNumber, Section, absent
 from octsim.config.fields import key as _key
+from octsim.config.scene import Medium
 from octsim.config.units import ANGLE, format_angle, parse_angle, schema_of
 
 
@@ -62,6 +63,11 @@ class Objective(Section):
     numerical_aperture: PositiveNumber = _key(1.2, "below the index of glass")
     focus_distance: PositiveLength = _key(
         "300 um", "from the objective plane to the focus; beyond every focus"
+    )
+    immersion: Annotated[Medium | None, BeforeValidator(absent)] = _key(
+        None,
+        "what is between objective and slide, as oil, where its index is another; the lowest of "
+        "scene.layers, the slide, then has a thickness; null or none is no other",
     )
     magnification: PositiveNumber = _key(20.0, "object to fibre")
     pupil: Pupil = _key(

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 from octsim.config.effects import zernike_name
 from octsim.config.following import calibration_diameters, fitted_diameters
+from octsim.config.immersion import of_slide
 from octsim.config.models import Config
 from octsim.config.source import dim
 from octsim.schemes.table import SCHEMES
@@ -68,22 +69,33 @@ def _aberrations(config: Config) -> Iterator[str]:
     turned = objective.zernike_rays == "normal"
     by_rays = SCHEMES[config.tracing.scheme].light == "rays"
     shortest, _ = _band(config)
-    for number, rms in objective.zernike.of.items():
-        waves, name = abs(rms) / shortest, zernike_name(number)
-        term = f"objective.zernike.{number}: {rms:.6g} um" + (f" ({name})" if name else "")
-        if number == _PISTON:
-            continue
+    for term, rms, remedy in _terms(config):
+        waves = rms / shortest
         if waves > _LARGE_RMS:
             yield (
                 f"{term} is {waves:.3g} waves rms at {shortest:.6g} um, far beyond what an "
-                "objective has, and by which the focus is lost; give nanometres"
+                f"objective has, and by which the focus is lost; {remedy}"
             )
-        elif by_rays and turned and abs(rms) > _SMALL_RMS:
+        elif by_rays and turned and rms > _SMALL_RMS:
             yield (
                 f"{term} moves rays by less than the diffraction spot, so rays are not to be "
                 "trusted with it, as the detector cuts by position; compare with "
                 "tracing.scheme: fullwave"
             )
+
+
+def _terms(config: Config) -> Iterator[tuple[str, float, str]]:
+    """Return aberrations in words, their rms, µm, and what to do about one that is too large."""
+    for number, rms in config.objective.zernike.of.items():
+        if number != _PISTON:
+            name = f" ({name})" if (name := zernike_name(number)) else ""
+            yield f"objective.zernike.{number}: {rms:.6g} um{name}", abs(rms), "give nanometres"
+    if slide := of_slide(config):
+        below = f"{config.objective.immersion} below a slide of {config.scene.objective_medium}"
+        yield (
+            f"objective.immersion: {below}, {slide.rms:.3g} um,", slide.rms,
+            "an objective that is corrected for its slide is one without objective.immersion",
+        )  # fmt: skip
 
 
 def _focal_shift(config: Config) -> Iterator[str]:

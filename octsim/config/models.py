@@ -240,6 +240,13 @@ class Config(Section):
         return "uniform" if own is None else FibreMode.model_construct(fibre=own)
 
     @property
+    def media(self) -> Mapping[str, str]:
+        """Names of the media of scene and immersion, by the dotted keys that name them."""
+        immersion = self.objective.immersion
+        own = {} if immersion is None else {"objective.immersion": immersion}
+        return {**self.scene.media, **own}
+
+    @property
     def objective_material(self) -> Material:
         """What is around the objective."""
         return self.scene.objective_material

@@ -28,7 +28,7 @@ _ALIASES: Mapping[str, tuple[str, ...]] = {
     "filling": ("objective.pupil",),
     "from": ("start", "min"),
     "high": ("max", "stop"),
-    "immersion": ("scene.layers",),
+    "immersion": ("objective.immersion",),
     "index": ("scene.refractive_index",),
     "indices": ("scene.refractive_index",),
     "low": ("min", "start"),

@@ -139,7 +139,8 @@ class SceneConfig(Section):
         AfterValidator(_layered),
     ] = _key(
         ["glass", "water"],
-        "from below, the first ends at z = 0; one between two others as {medium, thickness}",
+        "from below, the first ends at z = 0; one between two others as {medium, thickness}; so "
+        "is the first, where objective.immersion is given",
     )
     cylinders: Annotated[
         tuple[CylinderConfig, ...], Field(max_length=100), BeforeValidator(listed)

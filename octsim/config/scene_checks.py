@@ -23,15 +23,16 @@ _CONTACT = 1e-12  # relative rounding of lengths of bodies that touch
 def impossible_scene(config: Config) -> Iterator[str]:
     """Return what is impossible of a plain config's scene, a line each."""
     scene = config.scene
-    if wrong := [*_media(scene), *_layers(scene)] or [*_swept(scene), *_indices(config)]:
+    if wrong := [*_media(config), *_layers(config)] or [*_swept(scene), *_indices(config)]:
         yield from wrong
     else:
         yield from _sizes(config)
 
 
-def _media(scene: SceneConfig) -> Iterator[str]:
-    known, used = dict(scene.refractive_index), set(scene.media.values())
-    for key, medium in scene.media.items():
+def _media(config: Config) -> Iterator[str]:
+    scene, media = config.scene, config.media
+    known, used = dict(scene.refractive_index), set(media.values())
+    for key, medium in media.items():
         if medium not in known:
             nearest = difflib.get_close_matches(medium, known, n=1, cutoff=0)[0]
             yield (
@@ -46,11 +47,12 @@ def _media(scene: SceneConfig) -> Iterator[str]:
                 f"scene is of {medium}; name it in scene.layers or scene.cylinders, or leave it "
                 f"out; the nearest name in use is {nearest}"
             )
+    within = set(scene.media.values())
     for medium in scene.attenuation.of:
-        if medium not in used:
+        if medium not in within:
             yield (
                 f"scene.attenuation.{medium}: given, but nothing in the scene is of {medium}; "
-                f"leave it out, or name one of {', '.join(sorted(used))}"
+                f"leave it out, or name one of {', '.join(sorted(within))}"
             )
 
 
@@ -67,7 +69,7 @@ def _indices(config: Config) -> Iterator[str]:
         )
     ends = config.spectrum.wavelength
     shortest, longest = sorted((ends.min, ends.max))
-    for medium in dict.fromkeys(config.scene.media.values()):
+    for medium in dict.fromkeys(config.media.values()):
         key, index = f"scene.refractive_index.{medium}", given[medium]
         material, span = material_of(index), span_of(index)
         if span and not (span[0] <= shortest and longest <= span[1]):
@@ -128,13 +130,18 @@ def least_index(config: Config, medium: str) -> float:
     return min(material.index(k).real for k in over)
 
 
-def _layers(scene: SceneConfig) -> Iterator[str]:
+def _layers(config: Config) -> Iterator[str]:
+    scene = config.scene
     last = len(scene.layers) - 1
     for place, layer in enumerate(scene.layers):
         outer, key = place in (0, last), f"scene.layers.{place}"
-        if outer and layer.thickness is not None:
-            where = "lowest" if place == 0 else "highest"
-            yield f"{key}.thickness: given, but the {where} layer has no end; leave it out"
+        if place == last and layer.thickness is not None:
+            yield f"{key}.thickness: given, but the highest layer has no end; leave it out"
+        if place == 0 and layer.thickness is not None and config.objective.immersion is None:
+            yield (
+                f"{key}.thickness: given, but the lowest layer has no end; leave it out, or name "
+                "in objective.immersion what is below it"
+            )
         if not outer and layer.thickness is None:
             yield (
                 f"{key}: {layer.medium} given, between two other layers; give its thickness, as "

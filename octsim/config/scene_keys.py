@@ -48,7 +48,7 @@ def _values(config: Config) -> Iterator[tuple[str, float]]:
             yield f"{key}.{name}", getattr(cylinder, name)
         for depth, shell in enumerate(cylinder.shells):
             yield f"{key}.shells.{depth}.thickness", shell.thickness
-    for medium in dict.fromkeys(scene.media.values()):
+    for medium in dict.fromkeys(config.media.values()):
         index = dict(scene.refractive_index)[medium]
         yield f"{_INDICES}{medium}", material_of(index).index(config.spectrum.middle).real
     for medium, attenuation in scene.attenuation.of.items():

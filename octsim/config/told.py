@@ -34,7 +34,7 @@ def _conventions(config: Config) -> Iterator[str]:
             f"polarisation.input: {state} is {vector} with fields e^(−iωt), of {helicity} helicity "
             f"(Hecht); IEEE calls it {other}-handed"
         )
-    given, used = dict(config.scene.refractive_index), config.scene.media.values()
+    given, used = dict(config.scene.refractive_index), config.media.values()
     for medium in dict.fromkeys(used):
         if isinstance(name := given[medium], str):
             yield f"scene.refractive_index.{medium}: {name} is by {SHIPPED[name].origin}"
@@ -45,10 +45,10 @@ def _scene(config: Config) -> str:
     host = f"in {_medium(config, scene.host_medium)}"
     cylinders = [_cylinder(config, place) for place in range(len(scene.cylinders))]
     between = [_layer(config, layer) for layer in scene.layers[1:-1]]
-    below, above = (_medium(config, scene.layers[place].medium) for place in (0, -1))
+    below, above = _lowest(config), _medium(config, scene.layers[-1].medium)
     if not cylinders:
         return f"{', '.join(between)} between {below} and {above}"
-    if not between:
+    if not between and config.objective.immersion is None:
         return f"{' and '.join(cylinders)}, {host}"
     return f"{' and '.join(cylinders)}, {host}; layers: {', '.join([below, *between, above])}"
 
@@ -59,6 +59,13 @@ def _medium(config: Config, name: str) -> str:
     if not material.dispersive:
         return f"{name} (n {n:g})"
     return f"{name} (n {n:.3f} at {2e3 * math.pi / k:.0f} nm, dispersive)"
+
+
+def _lowest(config: Config) -> str:
+    slide, immersion = config.scene.layers[0], config.objective.immersion
+    if immersion is None:
+        return _medium(config, slide.medium)
+    return f"{_medium(config, immersion)} below {_layer(config, slide)}"
 
 
 def _layer(config: Config, layer: Layer) -> str:

@@ -7,6 +7,7 @@ from octsim.config.derive import merge
 from octsim.config.effects import DetectorConfig
 from octsim.config.fields import number
 from octsim.config.grid import as_text, combinations, value_at
+from octsim.config.immersion import aberration_terms
 from octsim.config.known_keys import known_keys
 from octsim.config.models import Config
 from octsim.config.processing import OPTIONS, Processing, Sinusoid, options_read
@@ -110,10 +111,11 @@ def unread_scene(config: Config, asked: Mapping[str, Any]) -> list[str]:
         Dotted keys that a user asks for, and their values.
     """
     varied = (
-        "scene.layers", "scene.cylinders", "objective.zernike", "beam.waist", *_CHOICES, _PRESET,
+        "scene.layers", "scene.cylinders", "objective.immersion", "objective.zernike",
+        "beam.waist", *_CHOICES, _PRESET,
     )  # fmt: skip
     every = [at.config for at in combinations(config, *varied)]
-    used = {medium for one in every for medium in one.scene.media.values()}
+    used = {medium for one in every for medium in one.media.values()}
     gaps = any(one.gap is None for at in every for one in at.scene.cylinders)
     aplanatic = all(SCHEMES[one.tracing.scheme].light == "waves" for one in every)
     said = []
@@ -154,7 +156,7 @@ _NEEDED = {
 
 
 def _has(config: Config, key: str) -> bool:
-    return bool(config.objective.zernike.of if key == "objective.zernike" else config.beam.waist)
+    return bool(aberration_terms(config) if key == "objective.zernike" else config.beam.waist)
 
 
 def _line(given: str, value: Any, chosen: list[Config], keys: set[str], elsewhere: str) -> str:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import octsim.optics.shipped_materials  # noqa: F401  what a name in a config stands for
 from octsim.config.following import scan_diameter
+from octsim.config.immersion import aberration_terms
 from octsim.optics.detector import Detector, fibre_detector
 from octsim.optics.effects import Effects, ReferenceArm, Waist
 from octsim.optics.falloff import (
@@ -157,7 +158,7 @@ def waist_of(config: Config) -> Waist | None:
 def effects_of(config: Config) -> Effects:
     """Return what the thesis left out, of a config that asks for it."""
     objective, shift = config.objective, config.objective.focal_shift
-    terms = tuple(objective.zernike.of.items())
+    terms = aberration_terms(config)
     reference = config.interferometer.reference
     return Effects(
         aplanatic=objective.apodisation == "aplanatic",

@@ -135,7 +135,7 @@ def _traced(config: Config, diameter: float, focus: float, paths: int) -> _Trace
 
 def _plain(config: Config) -> Config:
     """Return a config, not checked, whose rays meet in the focus."""
-    objective = config.objective.model_copy(update={"zernike": ZernikeConfig()})
+    objective = config.objective.model_copy(update={"zernike": ZernikeConfig(), "immersion": None})
     return config.model_copy(update={"objective": objective, "beam": type(config.beam)()})
 
 

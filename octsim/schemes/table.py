@@ -198,7 +198,8 @@ FULL_WAVE = Scheme(
     mode_field_diameter=5.0,
     instrument=(
         "scene", "objective.numerical_aperture", "objective.magnification", "objective.pupil",
-        "objective.apodisation", "objective.zernike", "objective.focal_shift",
+        "objective.apodisation", "objective.immersion", "objective.zernike",
+        "objective.focal_shift",
     ),
     presets={"exact": {"accuracy": 1e-4}},
 )  # fmt: skip

@@ -29,6 +29,13 @@ EVERY: list[dict[str, Any]] = [
     {"objective": {"zernike": {"coma x": "1 nm", "spherical": "1 nm"}}},
     {"objective": {"zernike": {4: "1 nm"}, "zernike_rays": "phase"}},
     {"objective": {"focal_shift": {"reference": "755 nm", "linear": "0.4 um/um"}}},
+    {
+        "objective": {"immersion": "oil"},
+        "scene": {
+            "refractive_index": {"oil": 1.515},
+            "layers": [{"medium": "glass", "thickness": "170 um"}, "water"],
+        },
+    },
     {"polarisation": {"input": "unpolarised"}},
     {"polarisation": {"input": "30 deg", "analyser": "0.5 rad"}},
     {"scene": {"refractive_index": {"water": "water", "neuron": {"cauchy": [1.38, 0.004]}}}},

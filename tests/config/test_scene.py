@@ -59,7 +59,10 @@ def test_a_record_without_the_keys_is_the_same_config() -> None:
     old = Config().to_dict()
     for section, keys in (
         ("scene", ("layers", "cylinders", "attenuation")),
-        ("objective", ("pupil", "apodisation", "zernike", "zernike_rays", "focal_shift")),
+        (
+            "objective",
+            ("immersion", "pupil", "apodisation", "zernike", "zernike_rays", "focal_shift"),
+        ),
         ("detector", ("falloff", "mode_field_diameter", "fibre_na")),
     ):
         for key in keys:

@@ -98,6 +98,24 @@ def zernike(number: int, rms: float, **objective: str) -> OverlayOf:
     return overlay
 
 
+def other_immersion(by: float, thickness: str) -> OverlayOf:
+    """Put an immersion below a slide, of an index that is higher by so much."""
+
+    def overlay(config: Config) -> Overlay | None:
+        if config.objective.immersion is not None:
+            return None
+        slide, *above = config.to_dict()["scene"]["layers"]
+        return {
+            "scene": {
+                "refractive_index": {"immersion": config.objective_index + by},
+                "layers": [{"medium": slide, "thickness": thickness}, *above],
+            },
+            "objective": {"immersion": "immersion"},
+        }
+
+    return overlay
+
+
 def middle_wavelength(config: Config) -> str:
     """Return the wavelength of the middle of the band, to a nanometre."""
     return f"{2e3 * math.pi / config.spectrum.middle:.0f} nm"
@@ -182,9 +200,9 @@ def cover(height: str) -> OverlayOf:
         scene = config.scene
         if len(scene.layers) != 2 or not scene.cylinders:
             return None
-        glass, water = scene.objective_medium, scene.host_medium
-        between = {"medium": water, "thickness": height}
-        return nested("scene.layers", [glass, between, glass])
+        between = {"medium": scene.host_medium, "thickness": height}
+        slide = config.to_dict()["scene"]["layers"][0]
+        return nested("scene.layers", [slide, between, scene.objective_medium])
 
     return overlay
 

@@ -18,6 +18,7 @@ def is_on(config: Config, kind: str) -> bool:
         "attenuation": any(scene.attenuation.of.values()),
         "polarisation": config.polarisation.given,
         "zernike": bool(objective.zernike.of),
+        "immersion": objective.immersion is not None,
         "focal shift": shift is not None and shift.moves,
         "pupil": objective.pupil not in (None, "uniform"),
         "apodisation": objective.apodisation is not None,
@@ -37,6 +38,7 @@ def without(config: Config, kind: str) -> Overlay:
     scene, k = config.scene, config.spectrum.middle
     of = scene.refractive_index.of
     indices = {name: of[name].index(k).real for name in scene.media.values() if of[name].dispersive}
+    layers = config.to_dict()["scene"]["layers"]
     off: Mapping[str, Overlay] = {
         "dispersion": nested("scene.refractive_index", indices),
         "attenuation": nested("scene.attenuation", dict.fromkeys(scene.attenuation.of, "0 /um")),
@@ -44,13 +46,17 @@ def without(config: Config, kind: str) -> Overlay:
         "zernike": nested(
             "objective.zernike", {str(one): "0 nm" for one in config.objective.zernike.of}
         ),
+        "immersion": merge(
+            nested("objective.immersion", None),
+            nested("scene.layers", [scene.objective_medium, *layers[1:]]),
+        ),
         "focal shift": nested("objective.focal_shift", None),
         "pupil": nested("objective.pupil", None),
         "apodisation": nested("objective.apodisation", None),
         "falloff": nested("detector.falloff", "parabolic"),
         "rulings": nested("beam.waist", None),
         "scene": merge(
-            nested("scene.layers", [scene.objective_medium, scene.host_medium]),
+            nested("scene.layers", [layers[0], scene.host_medium]),
             _alone(config),
         ),
     }

@@ -127,7 +127,7 @@ def _switched_off(config: Config) -> Iterator[Variant]:
 
 def _without_unused(config: Config) -> Config:
     """Return a config, not checked as a whole, without media that nothing is of any more."""
-    used = {*RefractiveIndex.model_fields, *config.scene.media.values()}
+    used = {*RefractiveIndex.model_fields, *config.media.values()}
     data = config.to_dict()
     for section in ("refractive_index", "attenuation"):
         of = data["scene"][section]
