@@ -20,6 +20,13 @@ def _is_of_job(record: LogRecord) -> bool:
     return getattr(record, "exception", "") == "RuleException"
 
 
+def _without_traceback(text: str) -> str:
+    """Return what a failure of snakemake's own comes to, as of a disk that is full: a line."""
+    if "Traceback (most recent call last)" not in text:
+        return text
+    return f"octsim: snakemake failed: {text.splitlines()[-1]}; --verbose shows where"
+
+
 class LogHandler(LogHandlerBase):
     """Shows octsim's lines; of a dry run, and where it is asked for, snakemake's words."""
 
@@ -72,7 +79,7 @@ class LogHandler(LogHandlerBase):
             for line in RESULT[-1]() if RESULT else ():
                 self._screen.line(line)
         elif record.levelno >= ERROR and not (self._screen.failed or _is_of_job(record)):
-            self._screen.line(text, error=True)
+            self._screen.line(_without_traceback(text), error=True)
 
     def _begin(self, record: Any) -> None:
         """Show that a job begins; shares of a stage have no lines, as what gathers them has one."""

@@ -39,13 +39,35 @@ def test_bash_offers_what_can_follow(words: tuple[str, ...], offered: list[str],
     assert completed(bash, *words) == offered
 
 
-def test_zsh_has_every_command_with_what_it_is_for(capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.fixture
+def zsh(capsys: pytest.CaptureFixture[str]) -> str:
     assert main(["completion", "zsh"]) == 0
-    script = capsys.readouterr().out
-    assert script.startswith("#compdef octsim\n")
-    assert "'check:validate a config, and say what its run will take'" in script
-    if zsh := shutil.which("zsh"):
-        subprocess.run([zsh, "-n"], input=script, text=True, check=True)
+    return capsys.readouterr().out
+
+
+def test_zsh_has_every_command_with_what_it_is_for(zsh: str) -> None:
+    assert zsh.startswith("#compdef octsim\n")
+    assert "'check:validate a config, and say what its run will take'" in zsh
+
+
+@pytest.mark.skipif(shutil.which("zsh") is None, reason="zsh is not installed")
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        (("octsim", "ch"), "check:validate a config, and say what its run will take"),
+        (("octsim", "cache", ""), "show:"),
+        (("octsim", "cache", "show", "--f"), "--file:"),
+        (("octsim", "completion", "z"), "zsh"),
+    ],
+)
+def test_zsh_offers_what_can_follow(words: tuple[str, ...], offered: str, zsh: str) -> None:
+    # of its completion only what the script calls: it is given what there is to choose from
+    given = "compdef() :; _files() :; _describe() { print -l -- ${(P)4} }"
+    typed = f"words=({' '.join(map(repr, words))}); CURRENT={len(words)}"
+    asked = f"{given}\n{zsh}\n{typed}; _octsim"
+    done = subprocess.run(["zsh", "-f", "-c", asked], capture_output=True, text=True, check=True)
+    assert [one for one in done.stdout.splitlines() if one.startswith(offered)], done
+    assert done.stderr == ""
 
 
 def test_another_shell_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

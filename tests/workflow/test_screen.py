@@ -136,6 +136,30 @@ def test_a_config_error_is_the_whole_screen(tmp_path: Path) -> None:
     assert line.startswith("octsim: scene.gap: 5 given; a length needs its unit")
 
 
+@pytest.mark.parametrize(
+    ("blocks", "line"),
+    [
+        (4, "octsim: snakemake failed: OSError: … File too large; --verbose shows where"),
+        (
+            60,
+            "octsim: results/tiny/….nc: can't be written (NetCDF: …); what was there is unchanged",
+        ),
+    ],
+)
+def test_a_full_disk_is_a_line_and_no_more(
+    blocks: int, line: str, first: tuple[Path, Terminal], tmp_path: Path
+) -> None:
+    assert first
+    (tmp_path / "mine.yaml").write_text(yaml.safe_dump(OVERLAY), encoding="utf-8")
+    # no file may be longer, as if there were no room for it
+    limited = ["bash", "-c", f'ulimit -f {blocks}; exec "$@"', "bash", *RUN]
+    own = {"XDG_CACHE_HOME": str(tmp_path)}  # snakemake keeps the files of workflows there
+    terminal = Terminal(limited, tmp_path, **own)
+    assert terminal.status() == 1
+    assert re.fullmatch(forms(line), terminal.screen()[-1]), terminal.written
+    assert "Traceback" not in terminal.written
+
+
 def test_nothing_follows_the_error_of_a_job(first: tuple[Path, Terminal], tmp_path: Path) -> None:
     assert first
     overlay = merged(TINY, {"focus_law": {"fraction": {"stop": 0.42}}})
