@@ -101,7 +101,7 @@ def _tolerated(found: xr.Dataset) -> list[list[str]]:
 
 TEMPLATE = """# Membranes, myelin, neighbours, a tilt and a cover glass
 
-Written by `make docs` from `results/thesis/scenes.nc`; do not edit. `snakemake scenes` makes it
+Written by `make docs` from `results/thesis/scenes.nc`; do not edit. `octsim run scenes` makes it
 for the config's own scene, some minutes on two cores: one thing at a time is put into it, and the
 phase slope is found at {number} diameters from {first} to {last} µm, {band}, by counted rays
 (`vogel`), light paths (`paths`, 1e-4) and Maxwell's equations (`fullwave`, 1e-4). The slope is

@@ -201,7 +201,7 @@ def _criteria(here: xr.Dataset) -> str:
 
 TEMPLATE = """# Advice for the lab
 
-Written by `make docs` from `results/thesis/design.nc`; do not edit. `snakemake design` makes it
+Written by `make docs` from `results/thesis/design.nc`; do not edit. `octsim run design` makes it
 for a config of yours, minutes on two cores.
 
 ![How well an expansion is known](figures/design.png)

@@ -117,7 +117,7 @@ def _times(values: xr.DataArray, radius: float, more: str, less: str) -> str:
 
 TEMPLATE = """# The detector's falloff and radius
 
-Written by `make docs` from `results/thesis/detector.nc`; do not edit. `snakemake detector` makes
+Written by `make docs` from `results/thesis/detector.nc`; do not edit. `octsim run detector` makes
 it. The thesis (§4.4) weighs detected light by a parabola, so that a ray that just misses the
 detector when the neuron is a nanometre larger takes no amplitude along; it says that the falloff
 "was added in a late stage of the project and was not properly analysed", and that a parabola was

@@ -115,7 +115,7 @@ def _moved(one: xr.Dataset) -> str:
 
 TEMPLATE = """# The diffraction limit by defocus
 
-Written by `make docs` from `results/thesis/diffraction.nc`; do not edit. `snakemake diffraction`
+Written by `make docs` from `results/thesis/diffraction.nc`; do not edit. `octsim run diffraction`
 makes it, in about ten minutes of processor time, nearly all of it for rulings of each wavelength.
 
 **Rulings are no substitute for diffraction**: they bring figure 6's peaks closer to Maxwell's in

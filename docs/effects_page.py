@@ -115,7 +115,7 @@ def _writer(one: xr.Dataset) -> Callable[..., str]:
 
 TEMPLATE = """# What each effect changes
 
-Written by `make docs` from `results/thesis/effects.nc`; do not edit. `snakemake effects` makes it,
+Written by `make docs` from `results/thesis/effects.nc`; do not edit. `octsim run effects` makes it,
 for the configured scene and scheme (here {scheme}), at {number} diameters from {first} to {last}
 µm.
 

@@ -141,7 +141,7 @@ SLOPE_HEAD = [
 TEMPLATE = """# Estimators of the phase
 
 Written by `make docs` from `results/thesis/estimators.nc`; do not edit. `make docs` runs
-`snakemake estimators`, two to three minutes on two cores. The same target compares them on a scene of yours.
+`octsim run estimators`, two to three minutes on two cores. The same target compares them on a scene of yours.
 
 ![Estimators of the phase](figures/estimators.png)
 

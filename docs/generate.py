@@ -210,7 +210,7 @@ QUANTITIES = {
 STABILITY_TEMPLATE = """# Rounding at the extremes
 
 Written by `make docs` from `results/thesis/stability.nc`; do not edit. `make docs` runs
-`snakemake stability`, about two minutes on two cores, which traces up to 100 rays a cell with 50
+`octsim run stability`, about two minutes on two cores, which traces up to 100 rays a cell with 50
 digits (`octsim/studies/stability/exact.py`, on mpmath) beside octsim's doubles. A cell is one
 factor changed in one of five configs: the default; one with no gap, the focus on the glass and NA
 1.5; a neuron of index 3.33; one 1 nm thick; one 1 mm thick below an objective 1 m away. *Wide* ones
@@ -338,7 +338,7 @@ TARGET_HEAD = [
 TRADE_TEMPLATE = """# What accuracy costs
 
 Written by `make docs` from `results/thesis/tradeoff.nc`; do not edit. `make docs` runs
-`snakemake tradeoff`, some minutes on two cores. The same target measures a config of yours.
+`octsim run tradeoff`, some minutes on two cores. The same target measures a config of yours.
 
 ![Error over cost](figures/tradeoff.png)
 

@@ -218,7 +218,7 @@ Written by `make docs` from `results/thesis/responses.nc`; do not edit.
 
 An action potential may change a neuron's diameter, its membrane's thickness, the gap below it or
 its index: ions and water move, and the neuron may lift off. What each does to the phase at a held
-focus, and how far it is told from the others, is `snakemake responses`, some minutes on two cores.
+focus, and how far it is told from the others, is `octsim run responses`, some minutes on two cores.
 Spectra are by Maxwell's equations, as those of [calibration.md](calibration.md).
 
 At {diameter} µm:
@@ -303,7 +303,7 @@ expansion:
   bands: [[650 nm, 760 nm], [760 nm, 900 nm]]
 ```
 
-`snakemake expansion` then takes the responses of these bands at `expansion.diameter` in the place
+`octsim run expansion` then takes the responses of these bands at `expansion.diameter` in the place
 of the calibration. Weighted least squares give each quantity with its statistical error and, by
 what `calibration.tolerances` does to the responses, its systematic one, and the covariances of
 both; `reduced_chi_square` tells, where there are more phases than quantities, whether something

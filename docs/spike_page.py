@@ -198,7 +198,7 @@ def _point(found: xr.Dataset) -> dict[str, str]:
 SIDES = ("near", "far", "beat")
 TEMPLATE = """# The spike, and what makes the slope scatter
 
-Written by `make docs` from `results/thesis/causes.nc`; do not edit. `snakemake causes`, half a
+Written by `make docs` from `results/thesis/causes.nc`; do not edit. `octsim run causes`, half a
 minute on two cores, makes it for a config of yours. Slopes and scatters (standard deviations over
 the diameters) are in mrad/nm.
 

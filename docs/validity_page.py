@@ -83,7 +83,7 @@ def _others(paths: xr.Dataset, name: str) -> list[str]:
 
 TEMPLATE = """# Rays beside Maxwell's equations
 
-Written by `make docs` from `results/thesis/validity.nc`; do not edit. `snakemake validity` makes
+Written by `make docs` from `results/thesis/validity.nc`; do not edit. `octsim run validity` makes
 it, in about two minutes of processor time. For the configured instrument, and with one quantity
 varied at a time, it compares both schemes of rays with the scheme `fullwave` (accuracy 1e-4) at
 {number} diameters from {first} to {last} µm, {band}. Where a pupil is named it

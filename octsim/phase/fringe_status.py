@@ -115,7 +115,7 @@ _LIT: Mapping[FringeStatus, str] = {
     **_MEASURED,
     FringeStatus.POOR_FIT: (
         "the fringe is no pure sinusoid; octsim's own are none by a few %, and a calibration by "
-        "the same fit has the same shape: snakemake match says whether it is the model's"
+        "the same fit has the same shape: octsim run match says whether it is the model's"
     ),
     FringeStatus.MIXED: (
         "subtract fringes of other surfaces, else the phase is not of the diameter alone"
