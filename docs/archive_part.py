@@ -15,7 +15,13 @@ _PART = re.compile(r"(<!-- size: begin -->\n).*?(<!-- size: end -->)", flags=re.
 
 
 def archive_part(page: str, results: Path) -> str:
-    """Return the page with the size of a run's archive, without what targets beside it made."""
+    """Return the page with the size of a run's archive, without what targets beside it made.
+
+    Raises
+    ------
+    ValueError
+        If the page has no place for it.
+    """
     config = run_in(results).config
     with tempfile.TemporaryDirectory() as place:
         alone = Path(place) / results.name
@@ -30,4 +36,7 @@ def archive_part(page: str, results: Path) -> str:
         packed = pack(alone, Config.model_validate(config.to_dict()))
     size = f"{packed.bytes / 1e6:.1f} MB, of {packed.files} files"
     said = f"The thesis's, without targets beside it, is {size}.\n"
-    return _PART.sub(lambda found: f"{found[1]}{said}{found[2]}", page)
+    text, parts = _PART.subn(lambda found: f"{found[1]}{said}{found[2]}", page)
+    if not parts:
+        raise ValueError("docs/archives.md: no lines that begin and end the size; put them back")
+    return text
