@@ -34,6 +34,9 @@ export GIVEN_CONFIG := $(value CONFIG)
 export GIVEN_FILE := $(value FILE)
 export GIVEN_INTO := $(value INTO)
 
+# a module's tests stay together, so that what they share is made once
+TESTS = $(BIN)/pytest -n 2 --dist loadscope --no-loadscope-reorder
+
 .PHONY: results archive reproduce test test-all test-processors test-pythons lint format docs site bench \
 	bench-sweeps bench-growth bench-peers kills soak mutants lock slurm test-slurm bench-slurm clean
 results: .venv/run
@@ -47,10 +50,10 @@ reproduce: .venv/run
 	@$(BIN)/octsim reproduce "$$GIVEN_FILE" "$$GIVEN_INTO" --cores $(CORES) $(TOLERANCE:%=--tolerance %)
 
 test: .venv/dev
-	$(BIN)/pytest -n 2 -m "not trial"
+	$(TESTS) -m "not trial"
 
 test-all: .venv/dev
-	$(BIN)/pytest -n 2 --durations=40
+	$(TESTS) --durations=40
 
 test-processors: .venv/dev
 	.ci/processors

@@ -24,6 +24,11 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the rooms whose modules take longest, so that none is left at the end alone."""
+    items.sort(key=lambda item: item.path.parent.name not in {"workflow", "cli"})
+
+
 @pytest.fixture
 def planned(tmp_path: Path) -> Callable[..., str]:
     """Tell what snakemake would do for some targets, in an empty folder."""
