@@ -1,23 +1,30 @@
-"""Every command in README.md and docs/ is one that is there; none of them is run."""
+"""Every command in README.md and docs/ is one that is there, and those of blocks are run."""
 
 import re
 import shlex
+import shutil
+import subprocess
+import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NoReturn
 
 import pytest
 import yaml
+from checkout import TINY, merged
 from snakemake.cli import get_argument_parser
 
 from octsim.cli import main as command
 from octsim.config.load import load_config
-from octsim.datasets.catalog import TARGETS
+from octsim.datasets.catalog import CATALOG, TARGETS
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 RULES = {"all", "figures", "animation", "report", "archive", *TARGETS}
+OPEN = {"[config]", "[targets]", "[--cores", "N]", "<target>", "…"}
+"""What stands for words of the user's."""
 FILES = re.compile(r"results/[\w/-]+\.\w+")
 """A file that a rule makes may be asked for by its name."""
 
@@ -90,11 +97,21 @@ def test_every_call_of_snakemake_is_of_targets_that_are_there(
     monkeypatch.setattr(ArgumentParser, "error", stop)
     parser = get_argument_parser()
     calls = called("snakemake")
-    assert len(calls) > 20
+    assert len(calls) > 3
     for page, arguments, _ in calls:
         given = parser.parse_args([one for one in arguments if one not in {"<target>", "…"}])
         for target in given.targets:
             assert target in RULES or FILES.fullmatch(target), f"{page}: snakemake {target}"
+
+
+def test_every_run_is_of_targets_that_are_there() -> None:
+    runs = [(page, given[1:]) for page, given, _ in called("octsim") if given[:1] == ["run"]]
+    assert len(runs) > 20
+    for page, given in runs:
+        words = given[: given.index("--")] if "--" in given else given
+        for target in words:
+            named = target in {*RULES, *CATALOG} or FILES.fullmatch(target)
+            assert named or target.endswith(".yaml") or target in OPEN, f"{page}: {target}"
 
 
 def test_every_call_of_make_is_of_a_target_that_is_there() -> None:
@@ -108,6 +125,59 @@ def test_every_call_of_make_is_of_a_target_that_is_there() -> None:
         for one in arguments:
             name, given, _ = one.partition("=")
             assert name in (known if given else targets), f"{page}: make {one}"
+
+
+# what takes minutes is planned alone, as other tests run it in small
+PLANNED = re.compile(
+    r"\.venv/bin/(?:octsim run (?:[a-z_]+$|config/|mine.yaml expansion)|snakemake .*profiles/slurm)"
+)
+# tests within tests, and what is installed
+NAMED_ALONE = re.compile(r"make (?:test|slurm)\b")
+OF_TWO_RUNS = re.compile(r"\.venv/bin/octsim compare|make reproduce")
+"""These end with 1 where the two differ."""
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Path:
+    """Give what a user has who has cloned it, with small configs by the names in the docs."""
+    for name in ("Makefile", "Snakefile"):
+        shutil.copy(ROOT / name, tmp_path)
+    for name in ("config", "workflow", "profiles"):
+        shutil.copytree(ROOT / name, tmp_path / name)
+    (tmp_path / ".venv").symlink_to(sys.prefix)
+    thick = {"run": "thick", "scene": {"gap": "20 nm"}}
+    of_series = {"expansion": {"series": "phases.csv", "diameter": "1.4 um"}}
+    for name, overlay in {
+        "config/default.yaml": {"run": "thesis"},
+        "config/examples/first_look.yaml": {"run": "first_look"},
+        "mine.yaml": merged(thick, of_series),
+    }.items():
+        (tmp_path / name).write_text(yaml.safe_dump(merged(TINY, overlay)), encoding="utf-8")
+    rows = "".join(f"{time},0.0\n" for time in range(8))
+    (tmp_path / "phases.csv").write_text(f"time,phase\n{rows}", encoding="utf-8")
+    return tmp_path
+
+
+def test_every_command_of_a_block_runs(checkout: Path) -> None:
+    lines = [line for page in PAGES for line, block in shown(page) if block]
+    commands = [" ".join(one.split(" #")[0].split()) for one in lines]
+    ran = 0
+    for line in dict.fromkeys(one for one in commands if one and not NAMED_ALONE.match(one)):
+        planned = PLANNED.match(line)
+        if planned and "slurm" in line and find_spec("snakemake_executor_plugin_slurm") is None:
+            continue
+        asked = re.sub("^make ", "make -o .venv/run ", line).replace("/some/folder", "elsewhere")
+        if planned:
+            asked += f"{' --' if 'octsim run' in line else ''} --dry-run"
+        if "phase_slope.nc" in line:
+            shutil.copy(checkout / "results" / "thesis" / "phase_slope.nc", checkout)
+            asked = asked.replace("elsewhere", "further")
+        done = subprocess.run(asked, shell=True, cwd=checkout, capture_output=True, text=True)
+        known = (0, 1, 2) if OF_TWO_RUNS.match(line) else (0,)
+        assert done.returncode in known, f"{line}: {done.stdout}{done.stderr}"
+        assert "Traceback" not in done.stderr, line
+        ran += 1
+    assert ran > 25
 
 
 @pytest.mark.parametrize("page", ["start.md", "how-to.md"])
