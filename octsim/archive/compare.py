@@ -15,9 +15,11 @@ from octsim.archive.compare_values import UNKNOWN, Deviation, ValueKind, deviati
 from octsim.archive.recorded import Recorded, recorded
 from octsim.base.errors import DatasetError
 from octsim.datasets.files import guarded, opened
+from octsim.datasets.status_variables import STATUSES
 
 ADDED = frozenset(
     {
+        *STATUSES,
         "phase_status", "fringe_status", "fringe_visibility", "centre_use", "brightest_focus",
         "relative_residual", "error_status", "rest_scatter", "smallest_step", "drift",
         "exact_phase_slope", "exact_status", "law_scheme",

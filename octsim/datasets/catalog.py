@@ -132,7 +132,7 @@ _RUN = (
                    "phase slope over the diameter"),
             Figure("grid", "octsim.figures.grid:figure_grid",
                    "phase slope across the grid",
-                   without=("component_phase_slope",), over_grid=True),
+                   without=("component_phase_slope", "component_slope_status"), over_grid=True),
         ),
     ),
 )  # fmt: skip

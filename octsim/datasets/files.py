@@ -25,6 +25,7 @@ from octsim.datasets.axes import wavelengths
 from octsim.datasets.catalog import CATALOG
 from octsim.datasets.code import code_of
 from octsim.datasets.keys import differing
+from octsim.datasets.statuses import with_statuses
 from octsim.datasets.variables import meaning
 from octsim.datasets.versions import SCHEMA, upgraded
 
@@ -57,7 +58,7 @@ def make(
     for name in map(str, dataset.variables):
         dataset[name].attrs = meaning(name) | dataset[name].attrs
     dataset.attrs = attributes(stage, config, title)
-    return dataset
+    return with_statuses(dataset, stage)
 
 
 def with_wavelength(dataset: xr.Dataset) -> xr.Dataset:
@@ -239,7 +240,8 @@ def _checked(
         if stage is None:
             raise DatasetError(f"{path}: not a dataset of octsim; give one that is")
         raise DatasetError(f"{path}: not octsim's dataset of the stage {stage}; {_remedy(path)}")
-    dataset = with_wavelength(upgraded(dataset, path))  # files of 0.3.0 and before lack some
+    # files of 0.3.0 and before lack some
+    dataset = with_statuses(with_wavelength(upgraded(dataset, path)), found)
     if config is None:
         return dataset
     differ = differing(found, config, json.loads(dataset.attrs["config"]))
@@ -250,9 +252,11 @@ def _checked(
     return dataset
 
 
-def flags(
-    codes: type[IntEnum], values: NDArray[np.integer[Any]]
-) -> tuple[NDArray[np.int8], dict[str, Any]]:
+Flags = tuple[NDArray[np.int8], dict[str, Any]]
+"""The values of a status, and the CF attributes that name them."""
+
+
+def flags(codes: type[IntEnum], values: NDArray[np.integer[Any]]) -> Flags:
     """Return the values of an enumeration with the CF attributes that name them."""
     members = list(codes)
     return np.asarray(values, np.int8), {

@@ -13,6 +13,7 @@ from octsim.config.given import with_config, with_named_config
 from octsim.config.grid import Combination
 from octsim.datasets.files import attributes
 from octsim.datasets.layout import Layout, filling
+from octsim.datasets.statuses import statuses_of
 from octsim.datasets.variables import meaning
 
 Parameters = ParamSpec("Parameters")
@@ -73,7 +74,8 @@ def pour(stream: Stream, sink: Sink) -> None:
             if name not in known:
                 known.add(name)
                 whole = named if ragged else (*layout.grid_dimensions, *named)
-                sink.create(name, whole, values.dtype, meaning(name) | (rest[0] if rest else {}))
+                said = meaning(name) | statuses_of(layout.stage, name)
+                sink.create(name, whole, values.dtype, said | (rest[0] if rest else {}))
             if ragged:
                 sink.append(name, values)
                 continue

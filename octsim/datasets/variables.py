@@ -10,6 +10,7 @@ from octsim.datasets.match_variables import MATCH
 from octsim.datasets.measured_variables import MEASURED
 from octsim.datasets.responses_variables import RESPONSES
 from octsim.datasets.scenes_variables import SCENES
+from octsim.datasets.status_variables import STATUSES
 from octsim.datasets.thesis_variables import DIFFRACTION, INTERFEROMETERS
 from octsim.datasets.validity_variables import VALIDITY
 
@@ -259,6 +260,7 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
     **VALIDITY,
     **DIFFRACTION,
     **INTERFEROMETERS,
+    **STATUSES,
 }
 _STANDARD_ERROR = "_standard_error"
 

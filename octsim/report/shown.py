@@ -18,7 +18,7 @@ from octsim.datasets.reader import Stored
 
 _LEFT_OUT: Mapping[str, tuple[str, ...]] = {
     "fourier": ("magnitude", "phase", "phase_status"),
-    "phase_slope": ("component_phase_slope",),
+    "phase_slope": ("component_phase_slope", "component_slope_status"),
 }
 """Variables that may be large, and are not shown."""
 _MOST_COMPARED = 60

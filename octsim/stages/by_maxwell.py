@@ -43,12 +43,34 @@ class ExactStatus(IntEnum):
     """The accuracy was not reached at some of the diameters."""
 
 
+class ExactSlopeStatus(IntEnum):
+    """Whether there is a slope by Maxwell's equations at a diameter."""
+
+    COMPARED = 0
+    OTHER_DIAMETER = 1
+    """Not one of the few that are compared."""
+    NOT_COMPARED = 2
+    """None is; `ExactStatus` says why."""
+    NOT_REACHED = 3
+    """The accuracy was not reached, there or beside."""
+    NO_FRINGE = 4
+    """Their spectrum has no phase, there or beside."""
+
+
 class ExactSlopes(NamedTuple):
     """Slopes of a sweep by Maxwell's equations."""
 
     slope: Array
     """(D,), mrad/nm; NaN but at `DIAMETERS` of them."""
     status: ExactStatus
+    of_each: NDArray[np.int64]
+    """`ExactSlopeStatus` of each, (D,)."""
+
+
+def not_compared(count: int, status: ExactStatus) -> ExactSlopes:
+    """Return the slopes of a number of diameters none of which is compared."""
+    none = np.full(count, ExactSlopeStatus.NOT_COMPARED)
+    return ExactSlopes(np.full(count, np.nan), status, none)
 
 
 def compared(count: int) -> list[int]:
@@ -72,7 +94,8 @@ def exact_slopes(config: Config, foci: Array) -> ExactSlopes:
     slope, status = np.full(diameters.size, np.nan), _before(config, foci)
     places = compared(diameters.size)
     if status != ExactStatus.COMPARED:
-        return ExactSlopes(slope, status)
+        return not_compared(diameters.size, status)
+    of_each = np.full(diameters.size, ExactSlopeStatus.OTHER_DIAMETER)
     exact = by_maxwell(config, ACCURACY)
     instrument = Instrument(exact)
     for place in places:
@@ -82,14 +105,19 @@ def exact_slopes(config: Config, foci: Array) -> ExactSlopes:
             for diameter, focus in zip(diameters[near].tolist(), foci[near].tolist(), strict=True)
         ]
         if any(found.status != AccuracyStatus.REACHED for found in spectra):
-            status = ExactStatus.NOT_REACHED
+            status, of_each[place] = (
+                ExactStatus.NOT_REACHED,
+                ExactSlopeStatus.NOT_REACHED,
+            )
             continue
         slope[place] = local_slope(
             np.stack([found.intensity for found in spectra]), instrument.wavenumber,
             diameters[near], exact.swept_group_index, config.processing,
             instrument.power,
         )  # fmt: skip
-    return ExactSlopes(slope, status)
+        known = np.isfinite(slope[place])
+        of_each[place] = ExactSlopeStatus.COMPARED if known else ExactSlopeStatus.NO_FRINGE
+    return ExactSlopes(slope, status, of_each)
 
 
 def _before(config: Config, foci: Array) -> ExactStatus:

@@ -1,6 +1,7 @@
 """The sweep over diameters: the rays that reach the detector."""
 
 from collections.abc import Mapping, Sequence
+from enum import IntEnum
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,14 @@ _NONE = np.empty(0)
 _NOTHING = Light(_NONE.astype(np.int64), _NONE, _NONE, _NONE, 0.0, 0, AccuracyStatus.NO_FOCUS)
 
 
+class FieldStatus(IntEnum):
+    """Whether the samples of a detected field are kept."""
+
+    KNOWN = 0
+    NOT_THERE = 1
+    """The intensity is the mean of fewer fields, or is summed from the rays themselves."""
+
+
 @Streamed
 def detections(
     config: Config,
@@ -52,7 +61,8 @@ def detections(
         that counts rays, how all segments of ray ended, outcomes(diameter, outcome). Where rays
         differ from wavenumber to wavenumber, or have a polarisation, they are those at the middle
         of the band, and the fields that they make at all samples are kept too: field_real and
-        field_imaginary (diameter, field, wavenumber), NaN for those that there are not.
+        field_imaginary (diameter, field, wavenumber), NaN for those that there are not, as
+        field_status (diameter, field) says.
 
     Examples
     --------
@@ -121,7 +131,10 @@ def _samples(found: Sequence[Light | Sampled], number: int) -> dict[str, Any]:
     for row, one in enumerate(found):
         if isinstance(one, Sampled):
             values[row, : len(one.values)], error[row] = one.values, one.error
+    there = np.isfinite(values).all(axis=-1)
+    status = np.where(there, FieldStatus.KNOWN, FieldStatus.NOT_THERE)
     return {
+        "field_status": (_SAMPLE[:2], *flags(FieldStatus, status)),
         "field_real": (_SAMPLE, values.real),
         "field_imaginary": (_SAMPLE, values.imag),
         "field_error": ("diameter", error),

@@ -1,6 +1,7 @@
 """The sweep over diameters by Maxwell's equations: the field that the detector collects."""
 
 from collections.abc import Sequence
+from enum import IntEnum
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,18 @@ _NOTHING = Waves(
 )  # fmt: skip
 
 
+class NodeStatus(IntEnum):
+    """Whether the field is solved for at a node."""
+
+    SOLVED = 0
+    NOT_NEEDED = 1
+    """The diameter has fewer nodes than others."""
+    NO_FOCUS = 2
+    """There is no focus law."""
+    BUDGET_SPENT = 3
+    """It takes more partial waves, nodes or wavenumbers than are solved for."""
+
+
 @Streamed
 def fields(
     config: Config,
@@ -51,7 +64,8 @@ def fields(
         :math:`e^{i k \Lambda_0}` of removed_optical_path_length(diameter): real and imaginary
         (diameter, polarisation, node) at node_wavenumber (diameter, node), and its parts, term_real
         and term_imaginary (diameter, term, polarisation, node); how sure it is (diameter). A
-        diameter that needs fewer nodes than others has NaN at the last ones.
+        diameter that needs fewer nodes than others has NaN at the last ones, as node_status
+        (diameter, node) says.
 
     Examples
     --------
@@ -104,6 +118,13 @@ def _wave_variables(found: Sequence[Waves], nodes: int) -> dict[str, Any]:
     values = _padded([waves.values for waves in found], nodes)
     terms = _padded([waves.terms for waves in found], nodes)
     status = np.array([waves.status for waves in found])
+    nothing = np.select(
+        [status == AccuracyStatus.NO_FOCUS, ~np.isfinite(values[:, 0, 0])],
+        [NodeStatus.NO_FOCUS, NodeStatus.BUDGET_SPENT],
+        NodeStatus.NOT_NEEDED,
+    )
+    solved = np.isfinite(values).all(axis=1)
+    at_nodes = np.where(solved, NodeStatus.SOLVED, nothing[:, np.newaxis])
     return {
         "real": (_FIELD, values.real),
         "imaginary": (_FIELD, values.imag),
@@ -117,6 +138,7 @@ def _wave_variables(found: Sequence[Waves], nodes: int) -> dict[str, Any]:
         "field_error": _each("error", found),
         "partial_waves": _each("order", found),
         "accuracy_status": ("diameter", *flags(AccuracyStatus, status)),
+        "node_status": (("diameter", "node"), *flags(NodeStatus, at_nodes)),
     }  # fmt: skip
 
 

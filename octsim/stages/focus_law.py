@@ -18,10 +18,23 @@ from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.schemes.table import LIGHT_PATHS, SCHEMES
 from octsim.stages.centres import FEWEST, CentreUse, doubts, failures, remedy, use_of
-from octsim.stages.gaussian_fits import FitStatus, fitted, law_diameters
+from octsim.stages.gaussian_fits import (
+    FitStatus,
+    StandardErrorStatus,
+    fitted,
+    law_diameters,
+)
 
 LawScheme = IntEnum("LawScheme", list(SCHEMES), start=0)  # type: ignore[misc]
 """The scheme whose intensities a law is fitted to."""
+
+
+class LawStatus(IntEnum):
+    """Whether there is a focus law."""
+
+    FITTED = 0
+    TOO_FEW = 1
+    """Fewer than three centres to fit; centre_use says why."""
 
 
 class Line(NamedTuple):
@@ -66,8 +79,9 @@ def focus_law(
     -------
     Dataset
         slope, intercept and their standard errors, NaN if there are fewer than three centres to
-        fit; status and brightest focus of the fits, and centre_use, whether the line is fitted to
-        each and why not (diameter); law_scheme, the scheme of the intensities.
+        fit, as law_status says; status and brightest focus of the fits, and centre_use, whether
+        the line is fitted to each and why not (diameter); law_scheme, the scheme of the
+        intensities.
 
     Warns
     -----
@@ -114,17 +128,21 @@ def focus_law(
         use = use_of(diameter, centre, part["width"].values)
         used = use == CentreUse.FITTED_THROUGH
         enough = used.sum() >= FEWEST
+        status = LawStatus.FITTED if enough else LawStatus.TOO_FEW
         fitted = fit_line(diameter[used], centre[used]) if enough else Line(*[np.nan] * 4)
         own: dict[str, object] = {name: ((), value) for name, value in fitted._asdict().items()}
         own |= {
             "status": ("diameter", *flags(FitStatus, part["status"].values)),
             "centre_use": ("diameter", *flags(CentreUse, use)),
+            "law_status": ((), *flags(LawStatus, np.array(status))),
             "brightest_focus": ("diameter", part["brightest_focus"].values),
             "law_scheme": ((), *flags(LawScheme, np.array(LawScheme[scheme]))),
         }
         if scheme != at.config.tracing.scheme:
             for name in ("centre", "centre_standard_error"):
                 own[f"law_{name}"] = ("diameter", part[name].values)
+            error = flags(StandardErrorStatus, part["standard_error_status"].values)
+            own["standard_error_status"] = ("diameter", *error)
         for doubt in doubts(xr.Dataset(own, {"diameter": diameter})):
             warnings.warn(doubt, OctsimWarning, stacklevel=2)
         return own

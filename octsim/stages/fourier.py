@@ -36,6 +36,18 @@ class PhaseStatus(IntEnum):
     """The spectrum is NaN, as there is no focus."""
 
 
+class EstimateStatus(IntEnum):
+    """Whether there is a phase by an estimator."""
+
+    KNOWN = 0
+    NO_FRINGE = 1
+    """The spectrum has none; fringe_status says why."""
+    NO_ESTIMATE = 2
+    """The estimator finds no phase."""
+    BY_COMPONENTS = 3
+    """The estimator is fft, whose phase is that of the components."""
+
+
 @Streamed
 def fourier(config: Config, spectra: xr.Dataset) -> Stream:
     """Take the Fourier transform of each spectrum.
@@ -45,7 +57,8 @@ def fourier(config: Config, spectra: xr.Dataset) -> Stream:
     Dataset
         magnitude, phase and whether that is known (diameter, component), depth(component);
         visibility and status of the fringe (diameter); and, of another estimator than fft,
-        estimated_phase and estimated_depth (diameter), NaN where there is no fringe.
+        estimated_phase, estimated_depth and estimate_status (diameter), NaN where there is no
+        fringe.
 
     Examples
     --------
@@ -117,7 +130,20 @@ def _transformed(layout: Layout, stored: Stored) -> Iterator[Part]:
                 found[:, visible] = estimate(intensity[visible], part["diameter"].values[visible])
             variables["estimated_phase"] = "diameter", found[0]
             variables["estimated_depth"] = "diameter", found[1]
+            told = _estimated(found[0], visible, by_components(at.config))
+            variables["estimate_status"] = "diameter", *flags(EstimateStatus, told)
         yield Part(at, span.start, len(intensity), variables)
+
+
+def _estimated(
+    phase: NDArray[np.float64], visible: NDArray[np.bool_], by_components: bool
+) -> NDArray[np.int64]:
+    """Return the `EstimateStatus` of phases (D,)."""
+    return np.select(
+        [~np.isnan(phase), np.full(phase.size, by_components), ~visible],
+        [EstimateStatus.KNOWN, EstimateStatus.BY_COMPONENTS, EstimateStatus.NO_FRINGE],
+        EstimateStatus.NO_ESTIMATE,
+    )
 
 
 def _fringe(config: Config, part: xr.Dataset, magnitude: NDArray[np.float64]) -> Fringe:

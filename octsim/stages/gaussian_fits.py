@@ -43,17 +43,34 @@ class FitStatus(IntEnum):
     """There is no light at any focus."""
 
 
+class StandardErrorStatus(IntEnum):
+    """Whether the standard errors of a Gaussian fit are known."""
+
+    KNOWN = 0
+    NOT_FITTED = 1
+    """There is no fit; `FitStatus` says why."""
+    TOO_FEW = 2
+    """The foci do not tell: none is left over, or one alone is on the peak."""
+
+
 class GaussianFit(NamedTuple):
     """A Gaussian plus a constant, each with its standard error; NaN without a peak."""
 
     parameters: NDArray[np.float64]
     """Centre, width, amplitude, offset, (4,)."""
     standard_errors: NDArray[np.float64]
-    """Of the four parameters, (4,); NaN where the foci do not tell: none is left over, or one alone
-    is on the peak."""
+    """Of the four parameters, (4,); NaN where they are not known."""
     residual: float
     """Root mean square of what the fit leaves."""
     status: FitStatus
+
+    @property
+    def error_status(self) -> StandardErrorStatus:
+        """Whether the standard errors are known."""
+        if self.status != FitStatus.FITTED:
+            return StandardErrorStatus.NOT_FITTED
+        known = bool(np.isfinite(self.standard_errors).all())
+        return StandardErrorStatus.KNOWN if known else StandardErrorStatus.TOO_FEW
 
 
 GAUSSIAN_PARAMETERS = ("centre", "width", "amplitude", "offset")
@@ -233,7 +250,8 @@ def gaussian_fits(config: Config, sweep: xr.Dataset) -> Stream:
     -------
     Dataset
         centre, width, amplitude, offset, their standard errors, residual, that over the range of
-        the intensity, status, and the brightest of the foci (diameter).
+        the intensity, status, that of the standard errors, and the brightest of the foci
+        (diameter).
 
     Examples
     --------
@@ -280,6 +298,8 @@ def fitted(sweep: xr.Dataset) -> dict[str, object]:
         variables["relative_residual"] = ("diameter", residual / np.ptp(intensity, axis=1))
     variables["brightest_focus"] = ("diameter", _brightest(focus, intensity))
     variables["status"] = ("diameter", *flags(FitStatus, np.array([fit.status for fit in fits])))
+    errors = np.array([fit.error_status for fit in fits])
+    variables["standard_error_status"] = ("diameter", *flags(StandardErrorStatus, errors))
     return variables
 
 

@@ -1,6 +1,7 @@
 """What each light path has in a spectrum: its amplitude, phase, optical path and share."""
 
 from collections.abc import Iterator, Mapping
+from enum import IntEnum
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from octsim.config.models import Config
 from octsim.config.scheme import point_cost, scheme_of
+from octsim.datasets.files import flags
 from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
@@ -21,11 +23,23 @@ from octsim.stages.swept_light import swept_diameters
 from octsim.stages.wave_shares import NAMES, wave_shares
 from octsim.stages.workload import points_per_block
 
+
+class PathStatus(IntEnum):
+    """Whether a light path brings light back from a diameter."""
+
+    KNOWN = 0
+    NO_LIGHT = 1
+    """None of its rays reaches the detector."""
+    NO_AMPLITUDE = 2
+    """Those that do have none, and so no mean path."""
+
+
 _NOT_THERE = {
     "field_amplitude": 0.0, "field_phase": np.nan, "mean_optical_path_length": np.nan,
     "share": 0.0, "path_rays": 0,
 }  # fmt: skip
 """Of a path that does not reach the detector at a diameter."""
+_OVER = ("path", "diameter")
 
 
 def _block_points(config: Config) -> int:
@@ -59,7 +73,7 @@ def light_paths(
         field_amplitude and field_phase, at the middle of the band, mean_optical_path_length, share
         and path_rays (path, diameter); path_code(path), negative for what is no path of rays. The
         strongest path is first. A path that does not reach the detector at a diameter has no rays
-        there, and its phase and optical path are NaN.
+        there, and its phase and optical path are NaN, as path_status says.
 
     Examples
     --------
@@ -120,11 +134,21 @@ def _shared(
         else:
             place = slice(codes.size, paths)
             found = [wave_shares(waves, k[0], step) for waves in stored_waves(part)]
-        variables = {
-            name: (("path", "diameter"), _placed(name, [one[name] for one in found], place, paths))
-            for name in _NOT_THERE
+        whole = {
+            name: _placed(name, [one[name] for one in found], place, paths) for name in _NOT_THERE
         }
-        yield Part(at, span.start, len(found), variables)
+        status = flags(PathStatus, _status(whole["field_phase"], whole["mean_optical_path_length"]))
+        variables: dict[str, Any] = {n: (_OVER, values) for n, values in whole.items()}
+        yield Part(at, span.start, len(found), variables | {"path_status": (_OVER, *status)})
+
+
+def _status(phase: NDArray[np.float64], length: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Return the `PathStatus` of phases and mean optical paths (P, D)."""
+    return np.select(
+        [np.isnan(phase), np.isnan(length)],
+        [PathStatus.NO_LIGHT, PathStatus.NO_AMPLITUDE],
+        PathStatus.KNOWN,
+    )
 
 
 def _placed(name: str, rows: list[NDArray[Any]], place: slice, paths: int) -> NDArray[Any]:

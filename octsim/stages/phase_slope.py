@@ -1,7 +1,8 @@
 """Components to the phase slope, beside the ideal and the prediction (figure 12)."""
 
 from collections.abc import Iterator
-from typing import Any
+from enum import IntEnum
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -9,9 +10,10 @@ from numpy.typing import NDArray
 
 from octsim.config.grid import Combination
 from octsim.config.models import Config
-from octsim.datasets.files import flags
+from octsim.datasets.files import Flags, flags
 from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.reader import Stored
+from octsim.datasets.statuses import MeanStatus
 from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.optics.two_beams import ideal_spectra, predicted_phase_slope
 from octsim.phase.by_config import ideal_phases
@@ -19,6 +21,27 @@ from octsim.phase.fringe_status import WITH_PHASE
 from octsim.phase.slopes import phase_slopes, slope_of
 from octsim.phase.transform import fourier_components
 from octsim.stages.fourier import block_points, by_components
+
+
+class SlopeStatus(IntEnum):
+    """Whether a phase has a slope over the diameter."""
+
+    KNOWN = 0
+    NO_FRINGE = 1
+    """The diameter's spectrum has no fringe; fringe_status says why."""
+    NO_FRINGE_BESIDE = 2
+    """That of a diameter beside it, which the difference needs, has none."""
+    BELOW_ROUNDING = 3
+    """The component holds nothing but rounding, there or beside."""
+
+
+class _Exact(NamedTuple):
+    """A combination's slopes by Maxwell's equations, with the statuses of each and of all."""
+
+    slope: NDArray[np.float64]
+    of_each: Flags
+    status: Flags
+
 
 _OF_SLOPES = (
     "mean_phase_slope", "phase_slope_standard_deviation", "standard_deviation_from_ideal",
@@ -47,7 +70,8 @@ def phase_slope(
         phase_slope, strongest_component, fringe_status and ideal_phase_slope (diameter),
         component_phase_slope(diameter, component), predicted_phase_slope, and the thesis's summary
         figures as scalars. With spectra by rays, exact_phase_slope(diameter) by Maxwell's equations
-        at a few diameters, NaN at the others, and exact_status.
+        at a few diameters, NaN at the others, and exact_status. Where a slope is NaN, slope_status,
+        component_slope_status, exact_slope_status and mean_slope_status say why.
 
     Examples
     --------
@@ -91,10 +115,15 @@ def _differentiated(layout: Layout, stored: Stored, foci: Stored | None) -> Iter
         variables = _slopes(at.config, stored.part(at, wide), span.start - wide.start, span)
         if foci is not None:
             if span.start == 0:
-                exact, status = _exact(layout, at, foci)
-            variables["exact_phase_slope"] = "diameter", exact[span]
+                exact = _exact(layout, at, foci)
+            variables["exact_phase_slope"] = "diameter", exact.slope[span]
+            variables["exact_slope_status"] = (
+                "diameter",
+                exact.of_each[0][span],
+                exact.of_each[1],
+            )
             if span.stop == count:
-                variables["exact_status"] = status
+                variables["exact_status"] = (), *exact.status
         for name, values in slopes.items():
             values.append(variables[name][1])
         if span.stop == count:
@@ -104,20 +133,43 @@ def _differentiated(layout: Layout, stored: Stored, foci: Stored | None) -> Iter
         yield Part(at, span.start, span.stop - span.start, variables)
 
 
-def _exact(
-    layout: Layout, at: Combination, stored: Stored
-) -> tuple[NDArray[np.float64], tuple[Any, ...]]:
+def _exact(layout: Layout, at: Combination, stored: Stored) -> _Exact:
     """Return a combination's slopes by Maxwell's equations, and why there are none, if so."""
     # here, as without spectra there is no need of light
-    from octsim.stages.by_maxwell import ExactSlopes, ExactStatus, exact_slopes
+    from octsim.stages.by_maxwell import (
+        ExactSlopeStatus,
+        ExactStatus,
+        exact_slopes,
+        not_compared,
+    )
 
     foci = stored.part(at, names=("focus",))["focus"].values
     if at is layout.combinations[0]:
         found = exact_slopes(at.config, foci)
     else:
-        nothing = np.full(foci.size, np.nan)
-        found = ExactSlopes(nothing, ExactStatus.OTHER_COMBINATION)
-    return found.slope, ((), *flags(ExactStatus, np.array(found.status)))
+        found = not_compared(foci.size, ExactStatus.OTHER_COMBINATION)
+    status = flags(ExactStatus, np.array(found.status))
+    return _Exact(found.slope, flags(ExactSlopeStatus, found.of_each), status)
+
+
+def slope_status(slope: NDArray[np.float64], visible: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Return the `SlopeStatus` of slopes (D, ...), of which some diameters have a phase.
+
+    Parameters
+    ----------
+    slope : ndarray, shape (D, ...)
+        NaN where there is none.
+    visible : ndarray of bool, shape (D,) or that of the slopes
+        Whether there is a phase.
+    """
+    visible = visible.reshape(*visible.shape, *(1,) * (slope.ndim - visible.ndim))
+    end = np.ones_like(visible[:1])
+    beside = np.concatenate([end, visible[:-1]]) & np.concatenate([visible[1:], end])
+    return np.select(
+        [np.isfinite(slope), ~visible, ~beside],
+        [SlopeStatus.KNOWN, SlopeStatus.NO_FRINGE, SlopeStatus.NO_FRINGE_BESIDE],
+        SlopeStatus.BELOW_ROUNDING,
+    )
 
 
 def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[str, Any]:
@@ -125,6 +177,7 @@ def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[
     inner = slice(before, before + span.stop - span.start)
     diameter, k = part["diameter"].values, config.spectrum.wavenumbers()
     phase, fringe = part["phase"].values, {}
+    visible = np.ones(diameter.size, bool)
     if "fringe_status" in part:  # files of 0.3.0 and before don't have it
         status = part["fringe_status"]
         visible = np.isin(status.values, WITH_PHASE)
@@ -140,11 +193,16 @@ def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[
     if not by_components(config):
         slope = slope_of(diameter, part["estimated_phase"].values)
         ideal_slope = slope_of(diameter, ideal_phases(config, spectra, diameter, k))
+    of_slope, of_component = (
+        flags(SlopeStatus, slope_status(one, visible)[inner]) for one in (slope, found.by_component)
+    )
     return {
         **fringe,
         "phase_slope": ("diameter", slope[inner]),
+        "slope_status": ("diameter", *of_slope),
         "strongest_component": ("diameter", found.component[inner]),
         "component_phase_slope": (("diameter", "component"), found.by_component[inner]),
+        "component_slope_status": (("diameter", "component"), *of_component),
         "ideal_phase_slope": ("diameter", ideal_slope[inner]),
         "ideal_component": ("diameter", ideals.component[inner]),
     }
@@ -160,7 +218,9 @@ def _figures(
     k = config.spectrum.wavenumbers()
     predicted = predicted_phase_slope(config.swept_material, k[0], k[-1])
     known = np.isfinite(phase_slope)
-    ideal = {
+    status = MeanStatus.KNOWN if known.any() else MeanStatus.TOO_FEW
+    ideal: dict[str, Any] = {
+        "mean_slope_status": ((), *flags(MeanStatus, np.array(status))),
         "predicted_phase_slope": predicted,
         "mean_ideal_phase_slope": ideal_phase_slope.mean(),
         "ideal_phase_slope_standard_deviation": ideal_phase_slope.std(),

@@ -51,7 +51,8 @@ def made() -> tuple[xr.Dataset, xr.Dataset]:
 
 def test_the_comparison_changes_no_number_of_the_rays(made: tuple[xr.Dataset, xr.Dataset]) -> None:
     alone, beside = made
-    assert set(beside) - set(alone) == {"exact_phase_slope", "exact_status"}
+    added = {"exact_phase_slope", "exact_slope_status", "exact_status"}
+    assert set(beside) - set(alone) == added
     xr.testing.assert_identical(alone, beside[list(alone)])
 
 

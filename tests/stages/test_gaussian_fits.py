@@ -14,7 +14,13 @@ from swept import FOCI, xr_sweep
 
 from octsim.config.load import load_config
 from octsim.stages.centres import doubts_of_fits
-from octsim.stages.gaussian_fits import FitStatus, fit_gaussian, gaussian, gaussian_fits
+from octsim.stages.gaussian_fits import (
+    FitStatus,
+    StandardErrorStatus,
+    fit_gaussian,
+    gaussian,
+    gaussian_fits,
+)
 
 
 @given(st.floats(0.5, 0.8), st.floats(0.008, 0.25), st.floats(1e-9, 1e3), st.floats(0, 1))
@@ -166,3 +172,17 @@ def test_the_dataset_holds_the_literal_fit_of_each_diameter(stages: dict[str, xr
         left = [np.mean((intensity - reference.gaussian(foci, *p)) ** 2) for p in (own, literal)]
         assert left[0] <= left[1] * (1 + 1e-12)
         assert found["residual"].item() == pytest.approx(np.sqrt(left[0]))
+
+
+def test_errors_that_the_foci_do_not_tell_have_a_status() -> None:
+    foci = np.linspace(0, 1, 11)
+    many = fit_gaussian(foci, gaussian(foci, 0.5, 0.2, 1.0, 0.1) + 1e-3 * np.cos(40 * foci))
+    assert many.error_status == StandardErrorStatus.KNOWN
+    four = np.array([0.0, 0.4, 0.6, 1.0])
+    bent = np.array([0.0, 0.01, 0.0, 0.02])
+    few = fit_gaussian(four, gaussian(four, 0.5, 0.2, 1.0, 0.1) + bent)
+    assert few.status == FitStatus.FITTED
+    assert np.isnan(few.standard_errors).all()
+    assert few.error_status == StandardErrorStatus.TOO_FEW
+    dark = fit_gaussian(foci, 0 * foci)
+    assert dark.error_status == StandardErrorStatus.NOT_FITTED

@@ -10,7 +10,7 @@ from octsim.figures.phase_slope import figure_12
 from octsim.figures.style import look, told_in
 from octsim.phase.fringe_status import FringeStatus
 from octsim.stages.fourier import PhaseStatus, doubts
-from octsim.stages.phase_slope import summary
+from octsim.stages.phase_slope import SlopeStatus, slope_status, summary
 
 
 def test_slopes_are_central_differences_of_the_unwrapped_phases(
@@ -141,3 +141,14 @@ def test_the_fringe_of_a_gap_is_not_taken_for_the_neuron_s() -> None:
     transformed = octsim.fourier(config, octsim.spectra(config, octsim.detections(config)))
     assert (transformed["fringe_status"] >= FringeStatus.OTHER_DEPTHS).all()
     assert doubts(transformed)
+
+
+def test_a_slope_s_status_says_what_it_lacks() -> None:
+    visible = np.array([True, True, False, True, True, True])
+    slope = np.array([24.0, np.nan, np.nan, np.nan, 24.0, np.nan])
+    assert slope_status(slope, visible).tolist() == [
+        SlopeStatus.KNOWN, SlopeStatus.NO_FRINGE_BESIDE, SlopeStatus.NO_FRINGE,
+        SlopeStatus.NO_FRINGE_BESIDE, SlopeStatus.KNOWN, SlopeStatus.BELOW_ROUNDING,
+    ]  # fmt: skip
+    of_each = slope_status(np.stack([slope, slope], axis=1), visible)
+    assert of_each[:, 1].tolist() == slope_status(slope, visible).tolist()
