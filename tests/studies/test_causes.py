@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from missing import unexplained
 
 import octsim
 from octsim.config.load import load_config
@@ -74,3 +75,7 @@ def test_the_dataset_explains_itself_and_is_drawn(found: xr.Dataset, tmp_path: P
         with look():
             save(draw(stored), tmp_path / f"{name}.png")
         assert (tmp_path / f"{name}.png").stat().st_size > 10_000
+
+
+def test_a_status_says_why_a_number_is_missing(found: xr.Dataset) -> None:
+    assert list(unexplained(found)) == []

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from missing import unexplained
 
 from octsim.base.errors import ConfigError
 from octsim.config.load import load_config
@@ -12,7 +13,7 @@ from octsim.datasets.files import read, write
 from octsim.figures.diffraction import diffraction_figure
 from octsim.figures.style import look, save
 from octsim.studies.diffraction import study
-from octsim.studies.diffraction.peaks import peak_within
+from octsim.studies.diffraction.peaks import PeakStatus, peak_within
 from octsim.studies.diffraction.study import (
     EACH,
     FIBRE,
@@ -46,7 +47,10 @@ def test_a_peak_is_found_with_its_width() -> None:
     assert peak.focus == pytest.approx(0.2)
     assert peak.height == pytest.approx(3)
     assert peak.width == pytest.approx(0.2 * np.sqrt(np.log(2)), rel=1e-2)
-    assert np.isnan(peak_within(x, bell, 0.4, 0.9)).all()  # there it only falls
+    assert peak.status == PeakStatus.KNOWN
+    none = peak_within(x, bell, 0.4, 0.9)  # there it only falls
+    assert np.isnan(none).all()
+    assert none.status == PeakStatus.NO_PEAK
 
 
 def test_a_shoulder_of_a_higher_peak_has_no_width() -> None:
@@ -54,6 +58,7 @@ def test_a_shoulder_of_a_higher_peak_has_no_width() -> None:
     shoulder = np.exp(-((x / 0.1) ** 2)) + 5 * np.exp(-(((x - 0.3) / 0.12) ** 2))
     peak = peak_within(x, shoulder, -0.2, 0.1)
     assert np.isnan(peak.width) or peak.height < 1.2
+    assert peak.status == (PeakStatus.NO_WIDTH if np.isnan(peak.width) else PeakStatus.KNOWN)
 
 
 def test_instruments_differ_in_what_is_compared_alone() -> None:
@@ -93,3 +98,7 @@ def test_it_is_written_read_told_and_drawn(found: xr.Dataset, tmp_path: Path) ->
     with look():
         save(diffraction_figure(kept), tmp_path / "diffraction.png")
     assert (tmp_path / "diffraction.png").stat().st_size > 10_000
+
+
+def test_a_status_says_why_a_number_is_missing(found: xr.Dataset) -> None:
+    assert list(unexplained(found)) == []

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from made_runs import SWEEP
+from missing import unexplained
 from numpy.typing import NDArray
 
 import octsim
@@ -114,5 +115,6 @@ def test_the_comparison_holds_every_estimator_and_draws() -> None:
         found["converged_scatter"].sel(estimator="fft")
     )
     assert "Cramér–Rao" in summary(found)
+    assert list(unexplained(found)) == []
     with look():
         assert len(estimators_figure(found).axes) == 3

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from missing import unexplained
 
 from octsim.config.load import load_config
 from octsim.datasets.files import read, write
@@ -75,3 +76,7 @@ def test_it_is_written_read_told_and_drawn(found: xr.Dataset, tmp_path: Path) ->
         for name, draw in (("michelson", michelson_figure), ("plates", plates_figure)):
             save(draw(kept), tmp_path / f"{name}.png")
             assert (tmp_path / f"{name}.png").stat().st_size > 10_000
+
+
+def test_a_status_says_why_a_number_is_missing(found: xr.Dataset) -> None:
+    assert list(unexplained(found)) == []

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from missing import unexplained
 
 from octsim.config.checks import rounding_remarks
 from octsim.config.grid import remarks
@@ -223,3 +224,7 @@ def test_a_lack_of_mpmath_is_one_line_with_the_remedy() -> None:
     )
     remedy = "pip install 'octsim[stability]'"
     assert done.stdout == f"mpmath is not installed; run: {remedy}\n"
+
+
+def test_a_status_says_why_a_number_is_missing(few: xr.Dataset) -> None:
+    assert list(unexplained(few)) == []

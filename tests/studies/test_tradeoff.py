@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from missing import unexplained
 from numpy.typing import NDArray
 
 from octsim.config.load import load_config
@@ -224,3 +225,20 @@ def test_effects_cost_and_change_what_they_do_by_each_scheme(measured: xr.Datase
     ratio = measured["effect_cost_ratio"].values
     assert (np.isfinite(ratio) == np.isfinite(measured["effect_intensity_change"].values)).all()
     assert (ratio[np.isfinite(ratio)] > 0).all()
+
+
+def test_a_status_says_why_a_number_is_missing(measured: xr.Dataset) -> None:
+    assert list(unexplained(measured)) == []
+
+
+def test_a_setting_s_status_names_the_reason_of_each_missing_number(measured: xr.Dataset) -> None:
+    def told(status: str, factor: str) -> set[str]:
+        one = measured[status][measured["factor"].values == factor]
+        words = one.attrs["flag_meanings"].split()
+        return {words[code] for code in one.values.tolist()}
+
+    assert told("segments_status", OF_WAVES) == {"by_waves"}
+    assert told("segments_status", "tracing.rays") == {"measured"}
+    assert told("law_error_status", OF_WAVES) == {"no_law"}
+    assert told("rays_law_status", "tracing.accuracy") == {"other_factor"}
+    assert told("maxwell_status", "spectrum.samples") == {"not_of_the_trade"}

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from missing import unexplained
 
 from octsim.base.errors import ConfigError
 from octsim.config.derive import changed
@@ -162,3 +163,7 @@ def test_the_study_is_kept_told_and_drawn(few: xr.Dataset, tmp_path: Path) -> No
     with look():
         save(validity_figure(kept), tmp_path / "validity.png")
     assert (tmp_path / "validity.png").stat().st_size > 10_000
+
+
+def test_a_status_says_why_a_number_is_missing(few: xr.Dataset) -> None:
+    assert list(unexplained(few)) == []

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from octsim.config.derive import by_accuracy, with_flat_source
 from octsim.config.models import Config
 from octsim.config.ranges import even
-from octsim.datasets.files import make
+from octsim.datasets.files import flags, make
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 from octsim.optics.two_beams import aliasing_step, indices, predicted_phase_slope
@@ -25,10 +25,12 @@ from octsim.studies.causes.switches import (
     CAUSES,
     Causes,
     Reading,
+    ShareStatus,
     every_slope,
     marginals,
     neighbours,
     shapley,
+    share_status,
     signal,
     slopes,
     strongest,
@@ -165,6 +167,7 @@ def _shares(values: dict[Causes, Array], smooth: Array) -> dict[str, Any]:
         ),
         "scatter_without": by_cause(lambda c: values[ALL - {c}].std()),
         "scatter_with_only": by_cause(lambda c: only[c]),
+        "share_status": ((), *flags(ShareStatus, np.array(share_status(whole)))),
         "trend_share": variance_share(smooth, whole),
         "unexplained_share": variance_share(none - smooth, whole),
         "phase_slope_standard_deviation": whole.std(),

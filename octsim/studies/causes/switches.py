@@ -7,6 +7,7 @@ it should do to the beat, and what leaks into the component whose phase it takes
 import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -189,6 +190,20 @@ def shapley(values: Mapping[Causes, Array]) -> dict[str, Array]:
         )
         for cause in causes
     }
+
+
+class ShareStatus(IntEnum):
+    """Whether the phase slope's variance is shared out."""
+
+    KNOWN = 0
+    NO_SCATTER = 1
+    """The slope is the same at all diameters."""
+
+
+def share_status(whole: Array) -> ShareStatus:
+    """Return whether a whole varies, and so has shares of its variance."""
+    off = whole - whole.mean()
+    return ShareStatus.KNOWN if float(off @ off) > 0 else ShareStatus.NO_SCATTER
 
 
 def variance_share(part: Array, whole: Array) -> float:

@@ -1,5 +1,6 @@
 """The three peaks of figure 6: where each is, how wide and how high."""
 
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -10,15 +11,31 @@ WINDOWS = {"glass": (-0.25, 0.25), "middle": (0.3, 0.88), "far side": (0.88, 1.8
 """Where each is looked for, as a fraction of the diameter."""
 
 
+class PeakStatus(IntEnum):
+    """Whether a peak is found, and has a width."""
+
+    KNOWN = 0
+    NO_PEAK = 1
+    """The intensity has no maximum where it is looked for."""
+    NO_WIDTH = 2
+    """It does not fall to half of its height on both sides before it rises above it."""
+
+
 class Peak(NamedTuple):
     """A peak of the intensity over the focus; NaN where there is none."""
 
     focus: float
     """µm."""
     width: float
-    """Full width at half of its height, µm; NaN where it does not fall to that on both sides before
-    it rises above its height."""
+    """Full width at half of its height, µm; NaN where it has none."""
     height: float
+
+    @property
+    def status(self) -> PeakStatus:
+        """Whether it is there, and has a width."""
+        if np.isnan(self.height):
+            return PeakStatus.NO_PEAK
+        return PeakStatus.NO_WIDTH if np.isnan(self.width) else PeakStatus.KNOWN
 
 
 def peak_within(focus: Array, intensity: Array, first: float, last: float) -> Peak:

@@ -13,12 +13,12 @@ from octsim.config.derive import changed, counting_rays, nested
 from octsim.config.following import scan_diameter, scan_foci
 from octsim.config.maxwell import beyond_maxwell, by_maxwell
 from octsim.config.models import Config, FocusLine
-from octsim.datasets.files import make
+from octsim.datasets.files import flags, make
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 from octsim.phase.estimators.sinusoid import sinusoid
 from octsim.phase.slopes import line_slope, slope_of
-from octsim.studies.diffraction.peaks import WINDOWS, peak_within
+from octsim.studies.diffraction.peaks import WINDOWS, PeakStatus, peak_within
 from octsim.studies.validity.errors import by_estimator
 
 Array = NDArray[np.float64]
@@ -84,11 +84,12 @@ def diffraction(
     Returns
     -------
     Dataset
-        intensity (case, focus), the mean over the band; peak_focus, peak_width and peak_height
-        (case, peak); estimated_phase and phase_slope (case, diameter), mean_phase_slope, the slope
-        of the line through the phase, and phase_slope_standard_deviation (case); from plain rays
-        slope_change and local_slope_change (case); and the mean slope with the focus off the law,
-        offset_phase_slope (case, focus_offset).
+        intensity (case, focus), the mean over the band; peak_focus, peak_width, peak_height and
+        peak_status (case, peak); estimated_phase and phase_slope (case, diameter),
+        mean_phase_slope, the slope of the line through the phase, and
+        phase_slope_standard_deviation (case); from plain rays slope_change and local_slope_change
+        (case); and the mean slope with the focus off the law, offset_phase_slope (case,
+        focus_offset).
 
     Raises
     ------
@@ -138,10 +139,11 @@ def _variables(
     config: Config, heights: Array, intensity: Array, diameter: Array, phase: Array, off: Array
 ) -> dict[str, Any]:
     size = scan_diameter(config)
-    peaks = np.array([
+    found = [
         [peak_within(heights, row, a * size, b * size) for a, b in WINDOWS.values()]
         for row in intensity
-    ])  # fmt: skip
+    ]
+    peaks, status = np.array(found), np.array([[one.status for one in row] for row in found])
     slope = np.stack([slope_of(diameter, row) for row in phase])
     mean = np.array([line_slope(diameter, row) for row in phase])
     change = slope - slope[0]
@@ -152,6 +154,7 @@ def _variables(
             f"peak_{name}": (("case", "peak"), peaks[..., place])
             for place, name in enumerate(("focus", "width", "height"))
         },
+        "peak_status": (("case", "peak"), *flags(PeakStatus, status)),
         "estimated_phase": (("case", "diameter"), phase),
         "phase_slope": (("case", "diameter"), slope),
         "mean_phase_slope": ("case", mean),

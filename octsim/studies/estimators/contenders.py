@@ -1,9 +1,11 @@
 """The estimators that are compared, and a sweep's phase slope by each."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from octsim.config.models import Config
 from octsim.config.processing import Processing
@@ -15,6 +17,17 @@ from octsim.phase.estimators.likelihood import Model, maximum_likelihood
 from octsim.phase.estimators.series import series_phases
 from octsim.phase.slopes import phase_slopes, slope_of
 from octsim.phase.transform import fourier_components, without_source
+
+
+class EstimateStatus(IntEnum):
+    """Whether an estimator has what is compared."""
+
+    KNOWN = 0
+    OF_A_SERIES = 1
+    """It is for a series at one diameter only."""
+    NO_ESTIMATE = 2
+    """It finds no phase in a spectrum that this takes."""
+
 
 LIKELIHOOD = "maximum_likelihood"
 COMMON = "sinusoid_common_envelope"
@@ -69,6 +82,13 @@ def contenders(config: Config) -> dict[str, Processing]:
     if config.processing not in compared.values():
         compared["run"] = config.processing
     return compared
+
+
+def estimate_status(values: Array, compared: Collection[str]) -> NDArray[np.int64]:
+    """Return the `EstimateStatus` of what estimators find of a sweep, (E, ...)."""
+    of_series = np.reshape([name == COMMON for name in compared], (-1, *(1,) * (values.ndim - 1)))
+    missing = np.where(of_series, EstimateStatus.OF_A_SERIES, EstimateStatus.NO_ESTIMATE)
+    return np.where(np.isnan(values), missing, EstimateStatus.KNOWN)
 
 
 def sweep_phases(

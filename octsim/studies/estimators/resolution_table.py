@@ -8,9 +8,10 @@ import numpy as np
 from octsim.base.threads import each
 from octsim.config.models import Config
 from octsim.config.processing import Processing
+from octsim.datasets.files import flags
 from octsim.instrument.points import Points
 from octsim.phase.estimators.estimate import Array
-from octsim.studies.estimators.contenders import Band
+from octsim.studies.estimators.contenders import Band, EstimateStatus
 from octsim.studies.estimators.resolution import (
     RATIOS,
     Resolution,
@@ -99,11 +100,14 @@ def _arranged(
     of_each = np.array(
         [[one.of_each[estimator] for one in resolutions] for estimator in compared]
     ).reshape(-1, *shape)
-    over = ("estimator", "noise_diameter", "snr"), of_each / bound
+    dimensions = ("estimator", "noise_diameter", "snr")
+    missing = np.isnan(of_each)
+    status = np.where(missing, EstimateStatus.NO_ESTIMATE, EstimateStatus.KNOWN)
     return {
         # over the diameters, as noise of each has as much to say
         f"{prefix}resolution": (("estimator", "snr"), np.sqrt(np.mean(of_each**2, axis=1))),
         f"{prefix}bound": ("snr", np.sqrt(np.mean(bound**2, axis=0))),
         f"{prefix}photons": ("snr", photons.mean(axis=0)),
-        f"{prefix}resolution_over_bound": over,
+        f"{prefix}resolution_over_bound": (dimensions, of_each / bound),
+        f"{prefix}resolution_status": (dimensions, *flags(EstimateStatus, status)),
     }

@@ -11,7 +11,7 @@ from octsim.base.threads import each
 from octsim.config.derive import by_accuracy, by_rays
 from octsim.config.models import Config
 from octsim.config.processing import Processing
-from octsim.datasets.files import make
+from octsim.datasets.files import flags, make
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 from octsim.phase.estimators.estimate import Array, middle
@@ -25,7 +25,9 @@ from octsim.studies.estimators.contenders import (
     CONTENDERS,
     LIKELIHOOD,
     Band,
+    EstimateStatus,
     contenders,
+    estimate_status,
     sweep_slopes,
 )
 from octsim.studies.estimators.path_phase import path_slopes
@@ -81,7 +83,8 @@ def estimators(
     Dataset
         phase_slope and converged_phase_slope (estimator, diameter), of counted rays and of light
         paths; their scatter about a trend, bias and largest spike; resolution(estimator, snr) and
-        its bound; and how another scene's spectra are misread.
+        its bound; and how another scene's spectra are misread. Statuses say where an estimator has
+        no such number.
 
     Raises
     ------
@@ -177,7 +180,15 @@ def _slopes(
             "estimator",
             np.where(known, diameter[spike], np.nan),
         ),
+        f"{prefix}slope_status": (
+            ("estimator", "diameter"),
+            *flags(EstimateStatus, estimate_status(slope, compared)),
+        ),
         "estimator_seconds": ("estimator", seconds),
+        "estimator_status": (
+            "estimator",
+            *flags(EstimateStatus, estimate_status(seconds, compared)),
+        ),
     }
 
 
@@ -200,6 +211,10 @@ def _misreadings(
     return {
         "misreading": (("estimator", "scene"), misread[0]),
         "misreading_scatter": (("estimator", "scene"), misread[1]),
+        "misreading_status": (
+            ("estimator", "scene"),
+            *flags(EstimateStatus, estimate_status(misread[0], compared)),
+        ),
         "likelihood_offset": ("scene", np.array(offsets)),
     }
 

@@ -1,6 +1,7 @@
 """Two and more plates on one arm (thesis §2.2): their spectra over a thickness."""
 
 from collections.abc import Iterator
+from enum import IntEnum
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -24,6 +25,14 @@ FILM = 0.7
 """Thickness of the film of water below the plate that is swept, µm."""
 
 
+class ClosedForm(IntEnum):
+    """Whether spectra are compared with a closed form."""
+
+    COMPARED = 0
+    NO_CLOSED_FORM = 1
+    """They are the ideal, or of light in a cone, which Airy's sum is not of."""
+
+
 class Plates(NamedTuple):
     """Spectra of one kind of plates."""
 
@@ -34,6 +43,11 @@ class Plates(NamedTuple):
     """(D, K)."""
     closed_form: Array | None
     """Airy's sum of light along the axis, (D, K), where that is what is asked."""
+
+    @property
+    def compared(self) -> ClosedForm:
+        """Whether there is a closed form."""
+        return ClosedForm.NO_CLOSED_FORM if self.closed_form is None else ClosedForm.COMPARED
 
 
 def plates(config: Config, thickness: Array, threads: int) -> Iterator[Plates]:

@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 
 from octsim.config.derive import with_flat_source
 from octsim.config.models import Config
-from octsim.datasets.files import make
+from octsim.datasets.files import flags, make
 from octsim.optics.two_beams import predicted_phase_slope
 from octsim.phase.slopes import phase_slopes
 from octsim.phase.transform import fourier_components, optical_depths
 from octsim.studies.interferometers.michelson import michelson
-from octsim.studies.interferometers.plates import Plates, plates
+from octsim.studies.interferometers.plates import ClosedForm, Plates, plates
 
 Array = NDArray[np.float64]
 SHOWN = 1.4
@@ -41,7 +41,7 @@ def interferometers(config: Config, threads: int = 1) -> xr.Dataset:
         and band_intensity (arm). Of each kind of plates plates_intensity (case, wavenumber) and
         magnitude (case, component) at one thickness, phase_slope (case, diameter), its mean and
         scatter (case), and plates_error (case), the largest difference of a spectrum from Airy's
-        sum over the largest intensity.
+        sum over the largest intensity; plates_error_status says where there is no such sum.
     """
     config = with_flat_source(config)  # as the closed forms have it
     k, diameter = config.spectrum.wavenumbers(), config.sweep.diameters.values()
@@ -97,6 +97,10 @@ def _of_plates(
         "mean_phase_slope": ("case", slopes.mean(axis=1)),
         "phase_slope_standard_deviation": ("case", slopes.std(axis=1)),
         "plates_error": ("case", np.array(error)),
+        "plates_error_status": (
+            "case",
+            *flags(ClosedForm, np.array([one.compared for one in found])),
+        ),
     }
 
 

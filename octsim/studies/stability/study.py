@@ -4,6 +4,7 @@ import multiprocessing
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -13,7 +14,7 @@ from octsim.datasets.files import flags, make
 from octsim.studies.stability.compare import measure
 from octsim.studies.stability.matrix import cells
 from octsim.studies.stability.pairs import RAYS
-from octsim.studies.stability.verdict import Row, Status
+from octsim.studies.stability.verdict import NumberStatus, Row, Status
 
 JUDGED = ("phase", "amplitude", "phase_slope", "spectrum", "launch")
 """What of a cell has an error beside its bound."""
@@ -23,6 +24,14 @@ NUMBERS = (
     "paths_compared", "paths_at_edge", "optical_path_length_error", "single_phase_error",
     "single_amplitude_error", "single_lost",
 )  # fmt: skip
+_RUN = (Status.WITHIN, Status.EDGE, Status.BEYOND, Status.WARNED)
+"""Statuses of a cell in which something is measured."""
+_TOLD = {
+    **{f"{name}_error_status": f"{name}_error" for name in JUDGED},
+    "single_error_status": "single_phase_error",
+    "paths_status": "optical_path_length_error",
+}
+"""Statuses of numbers, and one of the numbers that each is of."""
 
 
 def row(place: int, base: Config, most: int) -> Row:
@@ -53,7 +62,8 @@ def stability(
     -------
     Dataset
         For each cell, named corner / factor / value: errors, condition numbers, fractions of
-        the bound max(1e-9, 8 ε × condition number), what float32 would cost, status and reason.
+        the bound max(1e-9, 8 ε × condition number), what float32 would cost, status and reason;
+        and statuses that say why a number is missing.
     """
     matrix = cells(config)
     work, places = partial(row, base=config, most=most), range(len(matrix))
@@ -64,7 +74,7 @@ def stability(
         context = multiprocessing.get_context("fork")
         with ProcessPoolExecutor(threads, context, prepare) as pool:
             rows = list(pool.map(work, places))
-    variables: dict[str, object] = {
+    variables: dict[str, Any] = {
         name: ("cell", np.array([getattr(r, name) for r in rows])) for name in NUMBERS
     }
     for name in JUDGED:
@@ -74,6 +84,12 @@ def stability(
     codes, meaning = flags(Status, np.array([r.status for r in rows]))
     variables["status"] = ("cell", codes, meaning | {"long_name": "what became of the cell"})
     variables["reason"] = ("cell", [r.reason for r in rows])
+    run = np.isin(codes, _RUN)
+    for name, of in _TOLD.items():
+        missing = np.where(run, NumberStatus.NO_PATH, NumberStatus.NOT_RUN)
+        known = ~np.isnan(variables[of][1])
+        status = np.where(known, NumberStatus.MEASURED, missing)
+        variables[name] = ("cell", *flags(NumberStatus, status))
     return make(
         "stability",
         config,

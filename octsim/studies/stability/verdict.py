@@ -32,6 +32,16 @@ class Status(IntEnum):
     """No ray is at the edge that the cell asks for."""
 
 
+class NumberStatus(IntEnum):
+    """Whether a number of a cell is measured."""
+
+    MEASURED = 0
+    NOT_RUN = 1
+    """The cell is not run; its status says why."""
+    NO_PATH = 2
+    """There is no path, ray or light of the kind that it is of."""
+
+
 class Judgement(NamedTuple):
     """The largest error, the largest fraction of its bound, and the condition number there."""
 

@@ -5,6 +5,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from octsim.datasets.files import flags
+from octsim.studies.tradeoff.missing import TargetStatus, target_status
+
 TARGETS = (1e-3, 1e-4)
 """Errors at which the schemes are compared, beside that of `COUNTED` rays."""
 COUNTED = 3000
@@ -78,6 +81,10 @@ def comparison(
         "rays_law_exponent": exponent,
         "rays_law_error": ("setting", np.where(by_rays, constant * segments**exponent, np.nan)),
         "target_error": ("target", targets),
+        "target_status": (
+            "target",
+            *flags(TargetStatus, target_status(rays_needed, needed)),
+        ),
         "rays_segments": ("target", rays_needed),
         "rays_measured": ("target", np.array([int(measured) for _, measured in counted])),
         "paths_segments": ("target", needed),

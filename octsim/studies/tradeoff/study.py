@@ -29,6 +29,7 @@ from octsim.studies.tradeoff.errors import (
 )
 from octsim.studies.tradeoff.frontier import COUNTED, TARGETS, comparison, efficient
 from octsim.studies.tradeoff.measured_cost import MeasuredCost, apart, sweep_cost
+from octsim.studies.tradeoff.missing import setting_statuses
 from octsim.studies.tradeoff.settings import (
     Setting,
     is_of_the_trade,
@@ -81,9 +82,9 @@ def tradeoff(
     Returns
     -------
     Dataset
-        Errors, costs, and whether it is efficient, of each setting; how many times fewer segments
-        light paths need than counted rays, for each target error; and what effects cost and change
-        by each scheme.
+        Errors, costs, and whether it is efficient, of each setting, and statuses that say why one
+        is missing; how many times fewer segments light paths need than counted rays, for each
+        target error; and what effects cost and change by each scheme.
     """
     even(config.sweep.diameters, "tradeoff")
     unsolved = why_no_maxwell(config)
@@ -117,7 +118,8 @@ def tradeoff(
         **_law_errors(laws, FocusLine.fitted(law), config),
         **_changes(listed, costs),
     }
-    table = _dataset(config, listed, variables, effect_costs(config, line, tried))
+    effects = effect_costs(config, line, tried)
+    table = _dataset(config, listed, variables, effects, solved=not unsolved)
     return table.assign_attrs(maxwell=unsolved or _maxwell_is(config))
 
 
@@ -199,6 +201,8 @@ def _dataset(
     listed: list[Setting],
     variables: dict[str, Any],
     effects: tuple[dict[str, Any], dict[str, Any]],
+    *,
+    solved: bool,
 ) -> xr.Dataset:
     value = np.array([setting.value for setting in listed], float)
     factor = np.array([setting.factor for setting in listed])
@@ -209,6 +213,8 @@ def _dataset(
     # an error from rays' own limit and one from waves' are not of one trade
     by_rays = traced & np.array([not is_of_waves(s.config) for s in listed])
     own = np.array([is_the_runs(setting, config) for setting in listed])
+    compared = comparison(factor, value, segments, error)
+    of_each = column | {"rays_law_error": compared["rays_law_error"][1]}
     # the sweep itself, and not the same setting as a point of another factor
     first = np.flatnonzero(own)[:1]
     flags = {
@@ -230,7 +236,8 @@ def _dataset(
         "Error against a converged reference, and cost, as one setting after the other is varied",
         {
             **variables,
-            **comparison(factor, value, segments, error),
+            **compared,
+            **setting_statuses(listed, of_each, solved=solved),
             **{name: ("setting", flag.astype(np.int8)) for name, flag in flags.items()},
             "preset": ("setting", [preset_of(setting) for setting in listed]),
             **effects[0],

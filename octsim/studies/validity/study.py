@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from octsim.base.threads import each
 from octsim.config.models import Config, FocusLine
 from octsim.datasets.files import flags, make
+from octsim.datasets.statuses import MeanStatus, mean_status
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 from octsim.phase.fringe_status import FringeStatus
@@ -91,9 +92,11 @@ def validity(
     Dataset
         exact_phase_slope (case, focus_mode, estimator, diameter); by scheme of rays
         ray_phase_slope, ray_slope_error, ray_phase_error, ray_visibility_error and
-        ray_spectrum_error (case, ray_scheme, diameter), NaN where a spectrum has no fringe;
-        mean_slope_error and its standard error over the diameters; and the map, share_within
-        (…, bound_of_error): the share of the diameters where the slope's error is within it.
+        ray_spectrum_error (case, ray_scheme, diameter), NaN where a spectrum has no fringe, as
+        fringe_status says of Maxwell's and ray_fringe_status of rays';
+        mean_slope_error and its standard error over the diameters, with mean_slope_error_status;
+        and the map, share_within (…, bound_of_error): the share of the diameters where the slope's
+        error is within it.
 
     Raises
     ------
@@ -139,6 +142,7 @@ def _coordinates(every: Sequence[Case]) -> dict[str, Any]:
 def _variables(rows: Sequence[Sequence[Compared]]) -> dict[str, Any]:
     exact = np.array([[at.exact.slope for at in row] for row in rows])
     fringe = np.array([[at.exact.fringe for at in row] for row in rows])
+    by_rays = np.array([[[one.fringe for one in at.rays] for at in row] for row in rows])
     status = np.array([[at.exact.status for at in row] for row in rows])
     found = [[[differences(one, at.exact) for one in at.rays] for at in row] for row in rows]
     variables: dict[str, Any] = {
@@ -148,6 +152,8 @@ def _variables(rows: Sequence[Sequence[Compared]]) -> dict[str, Any]:
                             np.array([[at.exact.error for at in row] for row in rows])),
         "accuracy_status": (("case", "diameter"), *flags(AccuracyStatus, status)),
         "fringe_status": (("case", "diameter"), *flags(FringeStatus, fringe)),
+        "ray_fringe_status": (("case", "ray_scheme", "diameter"),
+                              *flags(FringeStatus, np.moveaxis(by_rays, 1, -1))),
     }  # fmt: skip
     for name in found[0][0][0]:
         # (case, diameter, scheme, ...) with the diameter last
@@ -159,6 +165,7 @@ def _variables(rows: Sequence[Sequence[Compared]]) -> dict[str, Any]:
     mean, sure = mean_error(variables["ray_phase_slope"][1], variables["exact_phase_slope"][1])
     variables["mean_slope_error"] = kinds, mean
     variables["mean_slope_error_standard_error"] = kinds, sure
+    variables["mean_slope_error_status"] = kinds, *flags(MeanStatus, mean_status(mean))
     within = np.abs(error)[..., np.newaxis] <= np.array(BOUNDS)
     variables["share_within"] = (*kinds, "bound_of_error"), within.mean(axis=-2)
     return variables

@@ -18,10 +18,12 @@ from octsim.studies.causes.switches import (
     ALL,
     Causes,
     Reading,
+    ShareStatus,
     Stencil,
     every_slope,
     neighbours,
     shapley,
+    share_status,
     signal,
     slopes,
     variance_share,
@@ -161,3 +163,11 @@ def test_shapley_is_the_mean_over_all_orders() -> None:
             mean[cause] += (values[before | {cause}] - values[before]) / 24
     found = shapley(values)
     assert all(np.allclose(found[c], mean[c], atol=1e-12) for c in "abcd")
+
+
+def test_a_slope_that_is_the_same_everywhere_has_no_shares() -> None:
+    flat, bent = np.full(5, 24.0), np.array([24.0, 24.0, 25.0, 24.0, 24.0])
+    assert share_status(flat) == ShareStatus.NO_SCATTER
+    assert np.isnan(variance_share(bent, flat))
+    assert share_status(bent) == ShareStatus.KNOWN
+    assert np.isfinite(variance_share(bent, bent))
