@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from conftest import CALIBRATED
+from missing import unexplained
 
 from octsim.config.load import load_config
 from octsim.figures.action_potential import action_potential_figure
@@ -56,5 +57,6 @@ def test_the_stated_error_covers_the_truth_as_often_as_one_sigma_should(
         assert variable.attrs["units"]
         assert variable.attrs["long_name"]
     assert "200 round trips" in summary(fired)
+    assert list(unexplained(fired)) == []
     with look():
         save(action_potential_figure(fired, calibrated), tmp_path / "fired.png")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from conftest import CALIBRATED
+from missing import unexplained
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
@@ -24,7 +25,13 @@ from octsim.schemes.light import AccuracyStatus
 from octsim.studies.calibration import slopes
 from octsim.studies.calibration.expansion import expansion
 from octsim.studies.calibration.parameters import PARAMETERS, parameters_of
-from octsim.studies.calibration.scheme import ACCURACY, ModelStatus, converged
+from octsim.studies.calibration.scheme import (
+    ACCURACY,
+    ModelStatus,
+    OtherSchemeStatus,
+    SlopeErrorStatus,
+    converged,
+)
 from octsim.studies.calibration.study import calibration, interpolation_error
 from octsim.studies.calibration.told import doubts, summary
 from octsim.studies.calibration.tolerances import moved
@@ -296,6 +303,13 @@ def test_rays_have_their_distance_from_maxwell_in_their_error(
         assert float(both[0][name]) == pytest.approx(float(both[1][name]), abs=1e-4)
 
 
+def test_a_status_says_why_a_number_is_missing(
+    calibrated: xr.Dataset, calibrated_by_rays: xr.Dataset
+) -> None:
+    for table in (calibrated, calibrated_by_rays):
+        assert list(unexplained(table)) == []
+
+
 def test_rays_that_nothing_is_known_of_have_no_error_and_say_so(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -307,6 +321,9 @@ def test_rays_that_nothing_is_known_of_have_no_error_and_say_so(
     assert np.isnan(table["fixed_focus_phase_slope_standard_error"]).all()
     assert "not known" in summary(table)
     assert any("numerical_aperture: 1.34 given" in doubt for doubt in doubts(table))
+    assert (table["standard_error_status"] == SlopeErrorStatus.NOT_COMPARED).all()
+    assert (table["maxwell_slope_status"] == OtherSchemeStatus.BEYOND_SCHEME).all()
+    assert list(unexplained(table)) == []
     moved_by = expansion(0.011, 1.4, table)
     assert np.isfinite(moved_by.expansion)
     assert np.isnan(moved_by.systematic_error)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from missing import unexplained
 from numpy.typing import NDArray
 
 import octsim
@@ -189,6 +190,27 @@ def test_an_outlier_is_named_and_never_the_largest_change(table: xr.Dataset) -> 
     assert np.array_equal(dropped["expansion"][there], kept["expansion"][there])
     assert dropped["measured_phase"][149] == phase[149], "as it was measured"
     assert "left out, as expansion.outliers says" in doubts(dropped)[0]
+
+
+@pytest.mark.parametrize("outliers", ["mark", "drop"])
+@pytest.mark.parametrize("error", [None, 1e-4])
+def test_a_status_says_why_a_number_is_missing(
+    table: xr.Dataset, outliers: str, error: float | None
+) -> None:
+    phase = phases(PULSE) + QUIET
+    phase[149] += 0.2
+    phase[22] = np.nan
+    series = Series(LONG, phase, None if error is None else np.full(200, error))
+    config = load_config({"expansion": {"outliers": outliers}})
+    found = series_expansion(config, series, table)
+    assert list(unexplained(found)) == []
+    codes = found["sample_status"].values
+    assert np.flatnonzero(codes).tolist() == ([22, 149] if outliers == "drop" else [22])
+    not_known = table.assign(fixed_focus_phase_slope_standard_error=np.nan * table["diameter"])
+    assert list(unexplained(series_expansion(config, series, not_known))) == []
+    flat = series_expansion(config, Series(LONG, np.full(200, 0.3)), table)
+    assert np.isnan(flat["statistical_error"]).all()
+    assert list(unexplained(flat)) == []
 
 
 def test_an_outlier_that_stops_the_rest_is_named_with_its_remedy(table: xr.Dataset) -> None:

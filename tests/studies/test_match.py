@@ -15,6 +15,7 @@ from octsim.datasets.files import flags
 from octsim.figures.match import match_figure
 from octsim.figures.style import look
 from octsim.instrument.instrument import Instrument
+from octsim.studies.calibration.missing import SystematicStatus
 from octsim.studies.match.fit import PARAMETERS, Match, Observed, match
 from octsim.studies.match.study import _slope, doubts, match_of_spectra, summary
 from octsim.studies.responses.separability import Separability
@@ -151,3 +152,14 @@ def test_the_slope_of_another_diameter_is_the_calibration_s_there(focus_rate: fl
     assert left["matched_phase_slope"] == pytest.approx(22, abs=1e-3)
     off = 1e3 * 0.01 * np.hypot((-0.02 - 0.581 * focus_rate) * 2, focus_rate)
     assert left["matched_phase_slope_standard_error"] == pytest.approx(off, rel=0.01)
+
+
+def test_a_calibration_s_error_that_is_not_known_is_told_by_a_status() -> None:
+    table, tolerance = calibrated(), np.full(5, 0.01)
+    fit = Match(np.zeros(5), np.diag(tolerance**2), np.zeros(5), np.zeros(5), 0.0, 0.0)
+    nothing = np.nan * table["diameter"]
+    rays = table.assign(fixed_focus_phase_slope_standard_error=nothing)
+    found = _slope(rays, 1.4, 0.581, fit, tolerance)
+    assert np.isnan(found["fixed_focus_phase_slope_standard_error"])
+    assert found["systematic_status"][1] == SystematicStatus.NOT_KNOWN
+    assert found["matched_systematic_status"][1] == SystematicStatus.KNOWN

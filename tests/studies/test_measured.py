@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from lab import DARK, NM, READ, SOURCE, K, Lab, recorded, written
+from missing import unexplained
 
 from octsim.base.errors import OctsimError
 from octsim.config.load import load_config
@@ -197,6 +198,13 @@ def test_frames_without_light_have_no_phase(tmp_path: Path, lab: Lab) -> None:
     assert (found["spectrum_status"].values[20:24] == FringeStatus.NO_FRINGE).all()
     assert np.isnan(found["fringe_phase"].values[20:24]).all()
     assert np.isfinite(found["fringe_phase"]).sum() == 56
+
+
+def test_a_status_says_why_a_number_is_missing(tmp_path: Path, lab: Lab) -> None:
+    lab.spectra[20:24] = lab.dark[:4]
+    found = measured(config_of(written(tmp_path, lab)))
+    assert found["source_power"].isnull().any()
+    assert list(unexplained(found)) == []
 
 
 @pytest.mark.parametrize("phase", [0.0, np.pi - 0.005])

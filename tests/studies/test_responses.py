@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from conftest import CALIBRATED
+from missing import unexplained
 from numpy.typing import NDArray
 
 from octsim.config.derive import calibrating, changed
@@ -296,3 +297,7 @@ def test_phases_of_bands_come_back_to_what_changed(
     assert found["change"].values[-1] == pytest.approx(truth, abs=0.5 * size**2)
     assert (found["change"].values[:count] == 0).all()
     assert np.isfinite(found["change_systematic_error"]).all()
+
+
+def test_a_status_says_why_a_number_is_missing(table: xr.Dataset) -> None:
+    assert list(unexplained(table)) == []

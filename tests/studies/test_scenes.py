@@ -3,15 +3,21 @@
 import numpy as np
 import pytest
 import xarray as xr
+from missing import unexplained
 
 from octsim.base.errors import ConfigError
 from octsim.config.load import load_config
 from octsim.figures.scenes import scenes_figure
 from octsim.figures.style import look
 from octsim.studies.scenes import cases as listed
-from octsim.studies.scenes.cases import AS_CONFIGURED, SCHEMES, CaseStatus, cases
+from octsim.studies.scenes.cases import AS_CONFIGURED, SCHEMES, Case, CaseStatus, cases
 from octsim.studies.scenes.study import scenes, summary
-from octsim.studies.scenes.tolerated import TOLERANCE
+from octsim.studies.scenes.tolerated import (
+    TOLERANCE,
+    ToleratedStatus,
+    tolerated,
+    tolerated_status,
+)
 
 RUN = load_config({
     "spectrum": {"samples": 100},
@@ -108,3 +114,27 @@ def test_the_figure_and_the_summary_are_made(few: xr.Dataset) -> None:
     with look():
         figure = scenes_figure(few)
     assert len(figure.axes) == 2
+
+
+def test_a_status_says_why_a_number_is_missing(few: xr.Dataset) -> None:
+    assert list(unexplained(few)) == []
+
+
+def test_what_is_tolerated_is_known_of_two_cases_whose_slopes_differ() -> None:
+    alone, *two = (
+        Case(quantity, float(value), "nm", (None,))
+        for value, quantity in enumerate(("gap", "myelin", "myelin"))
+    )
+    every = [alone._replace(quantity=AS_CONFIGURED), alone, *two]
+    slope = np.full((4, 1, 2, 2, 3), 24.0)
+    known = {"other": 25.0, "same": 24.0, "none": np.nan}
+    codes = {"other": ToleratedStatus.KNOWN, "same": ToleratedStatus.NO_CHANGE}
+    for name, value in known.items():
+        slope[3] = value
+        found = tolerated_status(every, slope)[:, 0].tolist()
+        one = ToleratedStatus.NO_OTHER_CASE
+        code = codes.get(name, ToleratedStatus.NO_SLOPE)
+        assert found == [one, one, code, code]
+        assert np.isfinite(tolerated(every, slope)[:, 0]).tolist() == [
+            status == ToleratedStatus.KNOWN for status in found
+        ]

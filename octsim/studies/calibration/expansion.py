@@ -18,6 +18,11 @@ from octsim.phase.rest_error import ErrorStatus, smallest_step, stated_change
 from octsim.studies.calibration.expansion_doubts import doubts as doubts
 from octsim.studies.calibration.expansion_doubts import named_samples, outliers_in
 from octsim.studies.calibration.expansion_fit import series_fit
+from octsim.studies.calibration.missing import (
+    SystematicStatus,
+    series_statuses,
+    systematic_status,
+)
 from octsim.studies.calibration.sensitivity import Expansion, matched, sensitivity_at, solved
 
 
@@ -222,6 +227,9 @@ def series_expansion(
         if settings.outliers == "off"
         else {"outlier": ("time", *flags(Standing, alone.astype(int)))}
     )
+    step = smallest_step(series.phase)
+    statuses = series_statuses(("time",), series.phase, dropped, change.scatter, step)
+    unsure = flags(SystematicStatus, systematic_status(at.standard_error))
     made = make(
         "expansion",
         config,
@@ -237,8 +245,10 @@ def series_expansion(
             "samples_missing": int(np.isnan(change.phase).sum()),
             "error_status": ((), *flags(ErrorStatus, np.array(status))),
             "rest_scatter": change.scatter,
-            "smallest_step": smallest_step(series.phase),
+            "smallest_step": step,
             "drift": change.drift,
+            **statuses,
+            "systematic_status": ((), *unsure),
             **measured,
             **marked,
         },

@@ -17,6 +17,13 @@ from octsim.phase.measured_series import Series
 from octsim.phase.outliers import Standing, outliers
 from octsim.phase.rest_error import ErrorStatus, smallest_step, stated_change
 from octsim.studies.calibration.expansion_doubts import doubts
+from octsim.studies.calibration.missing import (
+    MisfitStatus,
+    SystematicStatus,
+    misfit_status,
+    series_statuses,
+    systematic_status,
+)
 from octsim.studies.responses.quantities import CONFIGURED
 from octsim.studies.responses.separability import Separability, errors_of, told_apart
 
@@ -176,7 +183,13 @@ def series_fit(config: Config, series: Sequence[Series], responses: xr.Dataset) 
         for part in (found.statistical, found.systematic)
     ]
     first, covariances = settings.fit.index(DIAMETER), ("time", "quantity", "other_quantity")
-    measured = {"measured_phase": (("time", "band"), np.column_stack([s.phase for s in series]))}
+    whole = np.column_stack([one.phase for one in series])
+    measured = {"measured_phase": (("time", "band"), whole)}
+    steps = np.array([smallest_step(one.phase) for one in series])
+    scatter = np.array([one.scatter for one, _ in stated])
+    statuses = series_statuses(("time", "band"), whole, dropped.T, scatter, steps)
+    unsure = systematic_status(matrix.shift.sum())
+    misfit = misfit_status(found.chi_square, found.change)
     given = [one.phase_error for one in series if one.phase_error is not None]
     if given:
         errors = np.column_stack(given)
@@ -210,9 +223,12 @@ def series_fit(config: Config, series: Sequence[Series], responses: xr.Dataset) 
             "diameter": settings.diameter,
             "samples_missing": int(np.isnan(phase).any(axis=1).sum()),
             "error_status": ("band", *flags(ErrorStatus, np.array([s for _, s in stated]))),
-            "rest_scatter": ("band", np.array([one.scatter for one, _ in stated])),
-            "smallest_step": ("band", np.array([smallest_step(one.phase) for one in series])),
+            "rest_scatter": ("band", scatter),
+            "smallest_step": ("band", steps),
             "drift": ("band", np.array([one.drift for one, _ in stated])),
+            **statuses,
+            "systematic_status": ((), *flags(SystematicStatus, unsure)),
+            "chi_square_status": ("time", *flags(MisfitStatus, misfit)),
             **measured,
             **marked,
         },

@@ -35,6 +35,28 @@ class ModelStatus(IntEnum):
     """The slope is by rays where Maxwell's equations are not solved; its error is not known."""
 
 
+class SlopeErrorStatus(IntEnum):
+    """Whether the standard error of a slope is known."""
+
+    KNOWN = 0
+    NOT_REACHED = 1
+    """The accuracy is not reached; accuracy_status says why."""
+    NOT_COMPARED = 2
+    """The slope is by rays where Maxwell's equations are not solved."""
+
+
+class OtherSchemeStatus(IntEnum):
+    """Whether there is a slope by another scheme, or of one side's light."""
+
+    KNOWN = 0
+    BEYOND_SCHEME = 1
+    """The scheme can't do the scene or the instrument."""
+    NOT_REACHED = 2
+    """Its accuracy is not reached."""
+    NO_LIGHT = 3
+    """The side returns none."""
+
+
 def rays_because(config: Config) -> str:
     """Say in a line why a calibration's spectra are of rays; empty where they are Maxwell's."""
     if config.calibration.scheme == LIGHT_PATHS.name:

@@ -1,10 +1,11 @@
 """The calibration: how far the phase moves when the neuron alone does (`snakemake calibration`)."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from octsim.base.threads import each
@@ -26,6 +27,8 @@ from octsim.studies.calibration.scheme import (
     MISSED,
     MODEL,
     ModelStatus,
+    OtherSchemeStatus,
+    SlopeErrorStatus,
     converged,
     paths_of,
     rays_because,
@@ -76,7 +79,8 @@ def calibration(
         diameter_per_phase and phase_curvature; the slope whose focus follows, the thesis's Fourier
         transform's, that of other schemes and those of each side's light by itself, beside;
         sensitivities to each parameter and what its tolerance makes of it,
-        budget(diameter, parameter), with the error of the finite differences; and model_status.
+        budget(diameter, parameter), with the error of the finite differences; model_status; and
+        statuses that say why a number is missing.
 
     Raises
     ------
@@ -170,7 +174,9 @@ def _variables(
     late = np.isin(column["accuracy_status"], MISSED)
     error = np.where(late, np.nan, np.linalg.norm(parts, axis=0))
     k = config.spectrum.wavenumbers()
+    statuses = _statuses(column, error, late, budget, beyond=bool(beyond_maxwell(config)))
     return {
+        **statuses,
         "accuracy_status": ("diameter", *flags(AccuracyStatus, column.pop("accuracy_status"))),
         **{name: ("diameter", values) for name, values in column.items()},
         "model_status": ("diameter", *flags(ModelStatus, known)),
@@ -190,3 +196,31 @@ def _variables(
         "budget_error": (("diameter", "parameter"), budget_error),
         "predicted_phase_slope": predicted_phase_slope(config.swept_material, k[0], k[-1]),
     }  # fmt: skip
+
+
+def _statuses(
+    column: Mapping[str, Array], error: Array, late: NDArray[np.bool_], budget: Array, *,
+    beyond: bool,
+) -> dict[str, Any]:  # fmt: skip
+    """Return why errors, and slopes by other schemes and of each side's light, are missing."""
+    why = np.where(late, SlopeErrorStatus.NOT_REACHED, SlopeErrorStatus.NOT_COMPARED)
+    of_error = np.where(np.isnan(error), why, SlopeErrorStatus.KNOWN)
+    of_budget = np.where(np.isnan(budget), SlopeErrorStatus.NOT_COMPARED, SlopeErrorStatus.KNOWN)
+    waves = OtherSchemeStatus.BEYOND_SCHEME if beyond else OtherSchemeStatus.NOT_REACHED
+    others = {
+        "maxwell": waves, "rays": OtherSchemeStatus.NOT_REACHED,
+        "light_paths": OtherSchemeStatus.NOT_REACHED,
+        "near_side": OtherSchemeStatus.NO_LIGHT, "far_side": OtherSchemeStatus.NO_LIGHT,
+    }  # fmt: skip
+    of_others = {
+        name: np.where(np.isnan(column[f"{name}_phase_slope"]), code, OtherSchemeStatus.KNOWN)
+        for name, code in others.items()
+    }
+    return {
+        "standard_error_status": ("diameter", *flags(SlopeErrorStatus, of_error)),
+        "budget_status": (("diameter", "parameter"), *flags(SlopeErrorStatus, of_budget)),
+        **{
+            f"{name}_slope_status": ("diameter", *flags(OtherSchemeStatus, codes))
+            for name, codes in of_others.items()
+        },
+    }

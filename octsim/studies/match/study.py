@@ -15,6 +15,7 @@ from octsim.config.source import source_of
 from octsim.datasets.files import flags, make
 from octsim.phase.fringe_status import WITH_PHASE, FringeStatus
 from octsim.stages.focus_law import focus_line
+from octsim.studies.calibration.missing import SystematicStatus, systematic_status
 from octsim.studies.calibration.parameters import parameter_named
 from octsim.studies.calibration.scheme import waves_of
 from octsim.studies.calibration.sensitivity import MISFIT, sensitivity_at
@@ -175,12 +176,19 @@ def _slope(
     others = sum(
         _budget(budget, name, diameter, known) ** 2 for name in names if name not in PARAMETERS
     )
+    error = float(np.sqrt(rates @ both @ rates + others))
     return {
         "fixed_focus_phase_slope": at.slope,
         "fixed_focus_phase_slope_standard_error": at.standard_error,
+        "systematic_status": _status(at.standard_error),
         "matched_phase_slope": at.slope + float(rates @ both @ fitted @ found.change),
-        "matched_phase_slope_standard_error": float(np.sqrt(rates @ both @ rates + others)),
+        "matched_phase_slope_standard_error": error,
+        "matched_systematic_status": _status(error),
     }
+
+
+def _status(error: float) -> tuple[Any, ...]:
+    return (), *flags(SystematicStatus, systematic_status(error))
 
 
 def _budget(budget: xr.DataArray, name: str, diameter: float, known: Array) -> float:

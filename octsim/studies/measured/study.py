@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from enum import IntEnum
 from operator import attrgetter
 from typing import Any
 
@@ -26,6 +27,15 @@ from octsim.phase.estimators.one_fit import fitted
 from octsim.phase.fringe_status import WITH_PHASE, FringeStatus, doubts_of
 
 Array = NDArray[np.float64]
+
+
+class BandStatus(IntEnum):
+    """Whether a sample is in the band that is looked at."""
+
+    IN_THE_BAND = 0
+    OUTSIDE = 1
+
+
 _BLOCK_BYTES = 8e6
 """Of counts as floats, that are worked on at a time: what fast memory holds, and few gigabytes."""
 
@@ -78,8 +88,8 @@ def measured(config: Config) -> Stream:
     Dataset
         counts (time, wavenumber) as they were recorded; fringe_phase, fringe_phase_error,
         visibility, snr, fit_residual, saturated_samples and spectrum_status (time); source_power,
-        dark_level and sample_variance (wavenumber), NaN outside of the band; and what was
-        understood, as the attribute of that name.
+        dark_level and sample_variance (wavenumber), NaN outside of the band, as band_status says;
+        and what was understood, as the attribute of that name.
 
     Raises
     ------
@@ -161,10 +171,13 @@ def _phases(setup: Setup, raw: NDArray[Any]) -> dict[str, Any]:
 
 def _once(setup: Setup) -> dict[str, Any]:
     """Return what is of all spectra."""
+    inside = np.searchsorted(setup.wavenumber, setup.band.wavenumber)
+    status = np.full(setup.order.size, BandStatus.OUTSIDE)
+    status[inside] = BandStatus.IN_THE_BAND
 
     def everywhere(values: Array) -> tuple[str, Array]:
         whole = np.full(setup.order.size, np.nan)
-        whole[np.searchsorted(setup.wavenumber, setup.band.wavenumber)] = values
+        whole[inside] = values
         return "wavenumber", whole
 
     flat = np.ones(setup.band.wavenumber.size)
@@ -173,6 +186,7 @@ def _once(setup: Setup) -> dict[str, Any]:
         "source_power": everywhere(flat if setup.source is None else setup.source),
         "dark_level": everywhere(dark),
         "sample_variance": everywhere(setup.variance),
+        "band_status": ("wavenumber", *flags(BandStatus, status)),
         "full_scale": setup.full_scale,
         "fringe_depth": setup.model.depth,
         "measured_depth": setup.measured_depth,

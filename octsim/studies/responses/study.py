@@ -16,6 +16,7 @@ from octsim.stages.focus_law import focus_line
 from octsim.studies.calibration.parameters import parameters_of
 from octsim.studies.calibration.scheme import ModelStatus, converged, rays_because, require_budget
 from octsim.studies.responses.at_diameter import Bench, responses_at, shifts_at
+from octsim.studies.responses.missing import response_statuses
 from octsim.studies.responses.observables import bands_of, observables_of
 from octsim.studies.responses.quantities import CONFIGURED, quantities_of, variants_of
 from octsim.studies.responses.separability import Separability
@@ -57,7 +58,8 @@ def responses(
         Over variant (the scene as it is, and with a membrane), diameter and quantity: the phase
         response of each observable, the apparent expansion, the response of the spectrum; what
         standard errors shot noise leaves to each quantity alone, with another and with all others,
-        by the spectrum and by phases, with a status; and a trial on noisy spectra.
+        by the spectrum and by phases, with a status; a trial on noisy spectra; and statuses, which
+        say why a number is missing.
 
     Raises
     ------
@@ -136,6 +138,7 @@ def _variables(
     told = by_source(own, intensity, shape, response, noise)
     status = np.full(1, ModelStatus.NOT_COMPARED if by_rays else ModelStatus.BY_MAXWELL)[0]
     quantity, other = ("quantity",), ("quantity", "other_quantity")
+    statuses = response_statuses(shape, response.shape[2], told.correlation, by_rays=by_rays)
     return {
         "phase_response": ((*watched, "quantity"), response),
         "phase_response_standard_error": ((*watched, "quantity"), error),
@@ -169,4 +172,5 @@ def _variables(
             place, *flags(AccuracyStatus, np.stack(column["accuracy_status"]))
         ),
         "model_status": ((), *flags(ModelStatus, np.array(status))),
+        **statuses,
     }  # fmt: skip

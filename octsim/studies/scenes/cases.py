@@ -38,6 +38,16 @@ class CaseStatus(IntEnum):
     """The scheme can, in seconds to minutes a point: a run of the scene itself does it."""
 
 
+class ChangeStatus(IntEnum):
+    """Whether a change from the configured scene is known."""
+
+    MEASURED = 0
+    NOT_MEASURED = 1
+    """The scene, or the configured one, is not measured by the scheme; case_status says why."""
+    NO_FRINGE = 2
+    """Its spectrum, or that of the configured scene, has no fringe."""
+
+
 class Case(NamedTuple):
     """One scene, by each scheme that can do it."""
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from octsim.base.threads import each
 from octsim.config.models import Config
 from octsim.datasets.files import flags, make
+from octsim.datasets.statuses import MeanStatus, mean_status
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 from octsim.phase.derivatives import wrapped
@@ -18,8 +19,13 @@ from octsim.phase.fringe_status import FringeStatus
 from octsim.schemes.light import AccuracyStatus
 from octsim.stages.focus_law import focus_line
 from octsim.studies.detector.over_diameter import mean_of_known, root_mean_square
-from octsim.studies.scenes.cases import SCHEMES, Case, CaseStatus, cases
-from octsim.studies.scenes.tolerated import TOLERANCE, tolerated
+from octsim.studies.scenes.cases import SCHEMES, Case, CaseStatus, ChangeStatus, cases
+from octsim.studies.scenes.tolerated import (
+    TOLERANCE,
+    ToleratedStatus,
+    tolerated,
+    tolerated_status,
+)
 from octsim.studies.validity.errors import ESTIMATORS, FOCUS_MODES, Seen, seen
 from octsim.studies.validity.study import windows
 
@@ -58,8 +64,8 @@ def scenes(
         scene_phase_slope (case, scheme, focus_mode, estimator, diameter), and its change from the
         configured scene's by the same scheme, mean, scatter and worst over the diameters;
         scene_phase_change (case, scheme, diameter); what of a quantity moves the held slope by
-        `TOLERANCE`, tolerated (case, scheme); and statuses. NaN where there is no fringe, or where
-        case_status says why.
+        `TOLERANCE`, tolerated (case, scheme); and statuses, which say where a number is missing,
+        and why.
 
     Raises
     ------
@@ -121,6 +127,9 @@ def _variables(
     mean = mean_of_known(of_several)
     worst = np.where(several, np.where(known, np.abs(change), 0.0).max(axis=-1), np.nan)
     moved = wrapped(phase - phase[:1])
+    has = (measured == CaseStatus.MEASURED) & (measured[0] == CaseStatus.MEASURED)
+    missing = np.where(has, ChangeStatus.NO_FRINGE, ChangeStatus.NOT_MEASURED)
+    changed = np.where(np.isfinite(moved), ChangeStatus.MEASURED, missing[..., np.newaxis])
     return {
         "scene_phase_slope": ((*kinds, "diameter"), slope),
         "scene_slope_change": ((*kinds, "diameter"), change),
@@ -130,6 +139,15 @@ def _variables(
         "scene_phase_change": (("case", "scheme", "diameter"), moved),
         "tolerated": (("case", "scheme"), tolerated(every, slope)),
         "case_status": (("case", "scheme"), *flags(CaseStatus, measured)),
+        "change_status": (
+            ("case", "scheme", "diameter"),
+            *flags(ChangeStatus, changed),
+        ),
+        "mean_change_status": (kinds, *flags(MeanStatus, mean_status(mean))),
+        "tolerated_status": (
+            ("case", "scheme"),
+            *flags(ToleratedStatus, tolerated_status(every, slope)),
+        ),
         "intensity_error": (("case", "scheme", "diameter"), error),
         "accuracy_status": (("case", "scheme", "diameter"), *flags(AccuracyStatus, status)),
         "fringe_status": (("case", "scheme", "diameter"), *flags(FringeStatus, fringe)),

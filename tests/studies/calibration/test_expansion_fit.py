@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from missing import unexplained
 from numpy.typing import NDArray
 
 from octsim.base.errors import ConfigError, DatasetError, OctsimWarning
@@ -24,6 +25,7 @@ from octsim.studies.calibration.expansion_fit import (
     series_fit,
 )
 from octsim.studies.calibration.expansion_record import series_in
+from octsim.studies.calibration.missing import SampleStatus
 from octsim.studies.responses.separability import Separability
 
 Array = NDArray[np.float64]
@@ -190,6 +192,11 @@ def test_a_missing_or_outlying_phase_of_a_band_is_a_missing_change() -> None:
     assert np.isnan(found["change"].values[:, 0]).nonzero()[0].tolist() == [30, 35]
     assert found["outlier"].values.nonzero()[0].tolist() == [35]
     assert any(line.startswith("phase_1: outliers") for line in doubts(found))
+    codes = found["sample_status"].values
+    assert codes[30].tolist() == [SampleStatus.MISSING, SampleStatus.USED]
+    assert codes[35].tolist() == [SampleStatus.LEFT_OUT, SampleStatus.USED]
+    assert found["reduced_chi_square"].isnull().all()
+    assert list(unexplained(found)) == []
 
 
 def test_a_series_of_bands_is_a_dataset_that_can_be_made_again(tmp_path: Path) -> None:
