@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from missing import unexplained
 from numpy.typing import NDArray
 
 from octsim.base.errors import ConfigError, OctsimError
@@ -18,7 +19,7 @@ from octsim.phase.estimators.series import series_phases
 from octsim.schemes.light import AccuracyStatus
 from octsim.studies.design import settings
 from octsim.studies.design.cell import OFFSETS, SIDES, Seen
-from octsim.studies.design.criteria import peak
+from octsim.studies.design.criteria import CriterionStatus, peak
 from octsim.studies.design.settings import PARAMETERS
 from octsim.studies.design.study import best, design, doubts, summary
 from octsim.studies.design.uncertainty import ESTIMATORS, Known, Neuron, known
@@ -142,10 +143,12 @@ def test_a_peak_within_the_scan_is_found_and_one_at_its_end_is_none() -> None:
     inside = peak(foci, 3 - (foci - 0.3) ** 2)
     assert inside.at == pytest.approx(0.3)
     assert inside.prominence > 0
-    for values in (foci, -foci, np.full(9, np.nan)):
-        at, prominence = peak(foci, values)
+    end, none = CriterionStatus.AT_THE_END, CriterionStatus.NO_FRINGE
+    for values, why in ((foci, end), (-foci, end), (np.full(9, np.nan), none)):
+        at, prominence, status = peak(foci, values)
         assert np.isnan(at)
         assert prominence == 0
+        assert status == why
 
 
 def test_an_aperture_beyond_the_water_is_refused_by_its_key() -> None:
@@ -177,3 +180,7 @@ def test_the_figure_is_the_same_bytes_each_time(found: xr.Dataset, tmp_path: Pat
         with look():
             save(design_figure(found), tmp_path / f"{copy}.png")
     assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+
+
+def test_a_status_says_why_a_number_is_missing(found: xr.Dataset) -> None:
+    assert list(unexplained(found)) == []

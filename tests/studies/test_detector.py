@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from missing import unexplained
 
 from octsim.base.errors import ConfigError
 from octsim.config.derive import changed, counting_rays
@@ -229,3 +230,7 @@ def test_the_study_is_kept_told_and_drawn(few: xr.Dataset, tmp_path: Path) -> No
     with look():
         save(detector_figure(kept), tmp_path / "detector.png")
     assert (tmp_path / "detector.png").stat().st_size > 10_000
+
+
+def test_a_status_says_why_a_number_is_missing(few: xr.Dataset) -> None:
+    assert list(unexplained(few)) == []

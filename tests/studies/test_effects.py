@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from missing import unexplained
 
 from octsim.config.derive import changed
 from octsim.config.load import load_config
@@ -18,6 +19,7 @@ from octsim.phase.derivatives import wrapped
 from octsim.studies.effects import study
 from octsim.studies.effects.changes import Seen, change, mean_slope, measures, noise, unwrapped
 from octsim.studies.effects.kinds import EFFECTS
+from octsim.studies.effects.missing import ChangeStatus, change_status
 from octsim.studies.effects.needed import doubts, ranks, summary, verdict
 from octsim.studies.effects.study import effects
 from octsim.studies.effects.sweeps import rougher
@@ -288,3 +290,15 @@ def test_the_study_is_kept_told_and_drawn(few: xr.Dataset, tmp_path: Path) -> No
     with look():
         save(effects_figure(kept), tmp_path / "effects.png")
     assert (tmp_path / "effects.png").stat().st_size > 10_000
+
+
+def test_a_status_says_why_a_number_is_missing(few: xr.Dataset) -> None:
+    assert list(unexplained(few)) == []
+
+
+def test_a_change_s_status_names_what_it_lacks() -> None:
+    values, measured = [1.0, np.nan, np.nan], [True, True, False]
+    known, dark, none = ChangeStatus.MEASURED, ChangeStatus.NO_FRINGE, ChangeStatus.NOT_MEASURED
+    assert change_status(values, measured).tolist() == [known, dark, none]
+    far = change_status(values, measured, apart=True)
+    assert far.tolist() == [known, ChangeStatus.TOO_FAR_APART, none]

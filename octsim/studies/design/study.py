@@ -14,7 +14,7 @@ from octsim.phase.fringe_status import FringeStatus
 from octsim.schemes.light import AccuracyStatus
 from octsim.stages.focus_law import focus_line
 from octsim.studies.design.cell import bench_of, cell
-from octsim.studies.design.criteria import CRITERIA, peaks
+from octsim.studies.design.criteria import CRITERIA, CriterionStatus, peaks
 from octsim.studies.design.settings import (
     ACCURACY,
     PARAMETERS,
@@ -67,7 +67,8 @@ def design(config: Config, law: xr.Dataset | None = None, threads: int = 1) -> x
         Over estimator, aperture, band, fill, focus_offset and diameter: phase_slope,
         statistical_error, systematic_error and total_error; rms_error, over the diameters;
         slope_error of each parameter; of each setting the Cramér–Rao bound, brightness and fringe;
-        and of each criterion where it finds the focus, and what is known there.
+        and of each criterion where it finds the focus, and what is known there, or why it does
+        not.
 
     Raises
     ------
@@ -95,7 +96,10 @@ def design(config: Config, law: xr.Dataset | None = None, threads: int = 1) -> x
     }  # fmt: skip
     shape = [len(coordinates[name]) for name in _PLACES]
     table = _table(found, shape, settings.expansion, coordinates)
-    codes = {"fringe_status": FringeStatus, "accuracy_status": AccuracyStatus}
+    codes = {
+        "fringe_status": FringeStatus, "accuracy_status": AccuracyStatus,
+        "criterion_status": CriterionStatus, "criterion_error_status": CriterionStatus,
+    }  # fmt: skip
     named = {name: (table[name].dims, *flags(of, table[name].values)) for name, of in codes.items()}
     return make(
         "design", config, "How well an expansion is known, by each instrument and estimator",

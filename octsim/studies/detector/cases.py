@@ -33,6 +33,14 @@ class LimitStatus(IntEnum):
     """Scheme paths can't do the falloff, or something else of the instrument."""
 
 
+class JumpStatus(IntEnum):
+    """Whether it is known how the phase moves as rays enter or leave the detector."""
+
+    KNOWN = 0
+    NO_FRINGE = 1
+    """The spectrum has no fringe, before or after."""
+
+
 class Case(NamedTuple):
     """One detector."""
 

@@ -17,7 +17,15 @@ from octsim.phase.fringe_status import FringeStatus
 from octsim.schemes.light import AccuracyStatus
 from octsim.stages.by_maxwell import ExactStatus
 from octsim.stages.focus_law import focus_line
-from octsim.studies.detector.cases import FALLOFFS, Case, LimitStatus, cases, radii_of
+from octsim.stages.phase_slope import SlopeStatus, slope_status
+from octsim.studies.detector.cases import (
+    FALLOFFS,
+    Case,
+    JumpStatus,
+    LimitStatus,
+    cases,
+    radii_of,
+)
 from octsim.studies.detector.over_diameter import (
     jumps,
     mean_of_known,
@@ -65,8 +73,8 @@ def detector(
         Over falloff and detector_radius: ray_noise, phase_jump, edge_phase_jump, edge_rays and
         more of counted rays; of each ray_scheme line_slope, slope_scatter, signal, and
         slope_difference, slope_bias and shape_difference from Maxwell's equations;
-        ray_phase_slope and edge_jump at each diameter. What it comes to is the attribute
-        recommendation.
+        ray_phase_slope and edge_jump at each diameter; and statuses, which say why one of them is
+        missing. What it comes to is the attribute recommendation.
 
     Raises
     ------
@@ -90,6 +98,7 @@ def detector(
             **_by_scheme(found, diameter, predicted),
             **_counted(found, diameter, predicted),
             **_statuses(found, every),
+            **_of_slopes(found, diameter, predicted),
             "exact_status": ((), *flags(ExactStatus, np.array(status))),
         },
         {
@@ -168,6 +177,27 @@ def _counted(found: Sequence[Seen], diameter: Array, predicted: float) -> dict[s
     return {
         **{name: (_DETECTORS, _table(one)) for name, one in of_detectors.items()},
         "edge_jump": ((*_DETECTORS, "diameter"), _over(steps)),
+    }
+
+
+def _of_slopes(found: Sequence[Seen], diameter: Array, predicted: float) -> dict[str, Any]:
+    """Return why slopes and jumps are missing."""
+
+    def told(phase: Array) -> NDArray[np.int64]:
+        slope = over_diameter(diameter, phase, predicted).slope
+        first = np.moveaxis(slope, -1, 0), np.moveaxis(np.isfinite(phase), -1, 0)
+        status: NDArray[np.int64] = np.moveaxis(slope_status(*first), 0, -1)
+        return status
+
+    rays = _over(told(_last([one.phase for one in found])))
+    exact = told(np.array([one.exact_phase for one in found]))
+    jumps = _over(_last([one.edge_step for one in found]))
+    jump = np.where(np.isnan(jumps), JumpStatus.NO_FRINGE, JumpStatus.KNOWN)
+    over = (*_DETECTORS, "diameter")
+    return {
+        "ray_slope_status": (("ray_scheme", *over), *flags(SlopeStatus, rays)),
+        "maxwell_slope_status": ("diameter", *flags(SlopeStatus, exact)),
+        "edge_jump_status": (over, *flags(JumpStatus, jump)),
     }
 
 

@@ -101,13 +101,18 @@ def measured(bench: Bench, variant: Variant) -> Result:
         return Result(variant, variant.status)
     found = bench.swept(variant)
     whole = bench.changed(found)
-    fewer = bench.every(_FOR_NOISE)
+    fewer = for_noise(bench)
     rough = fewer.changed(fewer.swept(made_rougher(variant)))
     off = noise(fewer.changed(some(found, _FOR_NOISE)), rough, fewer.diameter)
     said = measures(whole, bench.diameter)
     known = np.isfinite(said.mean_slope_change)
     status = EffectStatus.MEASURED if known else EffectStatus.NO_FRINGE
     return Result(variant, status, found, whole, said, off)
+
+
+def for_noise(bench: Bench) -> Bench:
+    """Return the bench of the diameters that the noise is looked for at."""
+    return bench.every(_FOR_NOISE)
 
 
 def some(found: Swept, step: int) -> Swept:

@@ -105,17 +105,22 @@ def seen(config: Config, diameter: Array, foci: Array, intensity: Array, error: 
 def _configured(config: Config, diameter: Array, foci: Array, intensity: Array) -> Array:
     """Return the slopes (D,) by the configured estimator, mrad/nm.
 
-    They are NaN where its phases, of diameters that are far apart, are not unwrapped.
+    They are NaN where its phases are not unwrapped.
     """
-    k = config.spectrum.wavenumbers()
-    step = np.diff(diameter).max(initial=0.0)
-    if not 0 < step < aliasing_step(config.swept_material, k[0], k[-1]):
+    if not unwraps(config, diameter):
         return np.full(diameter.size, np.nan)
     if config.processing.estimator == "fft":
         bare = without_source(intensity, config.spectrum.power())
         components = fourier_components(bare, config.processing)
         return phase_slopes(diameter, np.abs(components), np.angle(components)).strongest
     return slope_of(diameter, estimator_of(config, foci)(intensity, diameter).phase)
+
+
+def unwraps(config: Config, diameter: Array) -> bool:
+    """Return whether a phase turns by less than half between diameters (D,), µm."""
+    k = config.spectrum.wavenumbers()
+    step = np.diff(diameter).max(initial=0.0)
+    return bool(0 < step < aliasing_step(config.swept_material, k[0], k[-1]))
 
 
 def change(one: Seen, other: Seen) -> Change:

@@ -6,8 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from octsim.datasets.files import flags
 from octsim.studies.effects.bench import Bench, Result, some
 from octsim.studies.effects.changes import Measures, measures, stacked
+from octsim.studies.effects.missing import ChangeStatus, change_status, change_statuses
 from octsim.studies.effects.needed import MEAN_TOLERANCE, ranks
 from octsim.studies.effects.variants import EffectStatus, combined
 
@@ -66,19 +68,25 @@ def largest(results: list[Result]) -> list[int]:
     return list(chosen.values())[:KINDS]
 
 
-def columns_of(results: list[Result], pairs: list[Pair], slope: float) -> dict[str, Any]:
+def columns_of(
+    bench: Bench, results: list[Result], pairs: list[Pair], slope: float
+) -> dict[str, Any]:
     """Return what a dataset has of pairs, where the mean slope as configured is known, mrad/nm."""
     measured = stacked([pair.result.measures for pair in pairs])
     excess = np.array([pair.excess.mean_slope_change for pair in pairs])
+    total = np.array([pair.total for pair in pairs])
+    local = np.array([pair.excess.slope_change_scatter for pair in pairs])
+    told = change_statuses(bench.every(_FOR_PAIRS), measured)
+    told["excess_status"] = flags(ChangeStatus, change_status(total + excess + local))
     sure = np.array([pair.sure for pair in pairs])
     names = [[results[place].variant.effect.name for place in pair.parts] for pair in pairs]
     columns: dict[str, Any] = {
         **{f"pair_{name}": values for name, values in measured.items()},
         "pair_calibration_change": measured["mean_slope_change"] / slope,
-        "pair_sum": np.array([pair.total for pair in pairs]),
+        "pair_sum": total,
         "pair_excess": excess,
         "pair_excess_noise": sure,
-        "pair_local_excess": np.array([pair.excess.slope_change_scatter for pair in pairs]),
+        "pair_local_excess": local,
         "pair_adds_up": (
             np.abs(excess) <= np.maximum(sure, MEAN_TOLERANCE * abs(slope))
         ).astype(np.int8),
@@ -88,4 +96,7 @@ def columns_of(results: list[Result], pairs: list[Pair], slope: float) -> dict[s
         "pair_first": [first for first, _ in names],
         "pair_second": [second for _, second in names],
     }  # fmt: skip
-    return {name: ("pair", values) for name, values in columns.items()}
+    return {
+        **{name: ("pair", values) for name, values in columns.items()},
+        **{f"pair_{name}": ("pair", *status) for name, status in told.items()},
+    }

@@ -10,8 +10,15 @@ from octsim.datasets.files import flags, make
 from octsim.optics.two_beams import predicted_phase_slope
 from octsim.schemes.light import AccuracyStatus
 from octsim.stages.focus_law import focus_line
-from octsim.studies.effects.bench import Bench, Result, bench_of, measured
-from octsim.studies.effects.changes import change, local_slopes, mean_phase_slope, stacked
+from octsim.studies.effects.bench import Bench, Result, bench_of, for_noise, measured
+from octsim.studies.effects.changes import (
+    change,
+    local_slopes,
+    mean_phase_slope,
+    stacked,
+    unwraps,
+)
+from octsim.studies.effects.missing import ChangeStatus, change_status, change_statuses
 from octsim.studies.effects.needed import (
     LOCAL_TOLERANCE,
     MEAN_TOLERANCE,
@@ -54,8 +61,8 @@ def effects(
     Dataset
         The measures of `octsim.studies.effects.changes.Measures` and their noise,
         calibration_change, cost_ratio, effect_status, rank, resolved and needed (effect);
-        effect_phase_change and effect_slope_change (effect, diameter); and of pairs what they
-        have beyond their parts.
+        effect_phase_change and effect_slope_change (effect, diameter); of pairs what they have
+        beyond their parts; and statuses, which say why a number is missing.
 
     Raises
     ------
@@ -73,8 +80,9 @@ def effects(
         {
             **baseline,
             **_columns(results, slope),
+            **_statuses(bench, results),
             **_by_diameter(bench, results),
-            **columns_of(results, pairs, slope),
+            **columns_of(bench, results, pairs, slope),
         },
         {
             "effect": [one.variant.effect.name for one in results],
@@ -97,13 +105,18 @@ def _baseline(bench: Bench, results: list[Result]) -> tuple[dict[str, Any], floa
     slope = mean_phase_slope(own, bench.diameter, predicted)
     rest = own._replace(phase=own.phase - predicted * bench.diameter)
     local = local_slopes(change(rest, own._replace(phase=0 * own.phase)), bench.diameter)
-    values = {
+    values: dict[str, Any] = {
         "baseline_slope": slope,
         "baseline_local_scatter": float(np.nanstd(local)),
         "baseline_configured_slope": float(own.slope.mean()),
         "baseline_configured_scatter": float(own.slope.std()),
         "baseline_seconds": float(np.median(found.seconds[1])),
     }
+    status = change_status(values["baseline_local_scatter"])
+    apart = not unwraps(bench.config, bench.diameter)
+    configured = change_status(values["baseline_configured_slope"], apart=apart)
+    values["baseline_status"] = (), *flags(ChangeStatus, status)
+    values["baseline_configured_status"] = (), *flags(ChangeStatus, configured)
     return values, slope
 
 
@@ -134,12 +147,30 @@ def _columns(results: list[Result], slope: float) -> dict[str, Any]:
     }
 
 
+def _statuses(bench: Bench, results: list[Result]) -> dict[str, Any]:
+    """Return why measures of effects and their noise are missing."""
+    has = np.array([one.found is not None for one in results])
+    known = stacked([one.measures for one in results])
+    del known["mean_slope_change"]  # which effect_status says
+    fewer, noise = for_noise(bench), stacked([one.noise for one in results])
+    found = change_statuses(bench, known, has) | change_statuses(fewer, noise, has, noise=True)
+    return {name: ("effect", *told) for name, told in found.items()}
+
+
 def _by_diameter(bench: Bench, results: list[Result]) -> dict[str, Any]:
     nothing = np.full(bench.diameter.size, np.nan)
     changes = [one.change for one in results]
     local = [nothing if one is None else local_slopes(one, bench.diameter) for one in changes]
     phase = [nothing if one is None else one.phase for one in changes]
+    has, over = np.array([[one is not None] for one in changes]), ("effect", "diameter")
+    found = {"phase": np.stack(phase), "slope": np.stack(local)}
     return {
-        "effect_phase_change": (("effect", "diameter"), np.stack(phase)),
-        "effect_slope_change": (("effect", "diameter"), np.stack(local)),
+        **{f"effect_{name}_change": (over, values) for name, values in found.items()},
+        **{
+            f"{name}_change_status": (
+                over,
+                *flags(ChangeStatus, change_status(values, has)),
+            )
+            for name, values in found.items()
+        },
     }
