@@ -49,7 +49,7 @@ def run_show(given: Namespace) -> int:
 
 
 def described(row: "Stage", dataset: "xr.Dataset") -> Iterator[str]:
-    """Return what a dataset comes to, a line each.
+    """Return what a dataset comes to, a line each; statuses that say the same in one.
 
     Parameters
     ----------
@@ -65,9 +65,12 @@ def described(row: "Stage", dataset: "xr.Dataset") -> Iterator[str]:
     sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
     made = f"octsim {dataset.attrs['octsim_version']}"
     yield f"{len(dataset.data_vars)} variables over {sizes or 'nothing'}; made by {made}"
+    told: dict[str, list[str]] = {}
     for name, variable in dataset.data_vars.items():
         if "flag_meanings" in variable.attrs:
-            yield f"{name}: {in_words(variable)}"
+            told.setdefault(in_words(variable), []).append(str(name))
+    for words, names in told.items():
+        yield f"{', '.join(names)}: {words}"
     for doubt in row.doubts_of(dataset):
         yield f"warning: {doubt}"
 

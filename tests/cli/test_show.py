@@ -8,7 +8,8 @@ import xarray as xr
 from made_runs import make
 
 from octsim.cli.main import main
-from octsim.cli.show import in_words
+from octsim.cli.show import described, in_words
+from octsim.datasets.catalog import CATALOG
 from octsim.datasets.files import flags
 from octsim.phase.fringe_status import FringeStatus
 
@@ -53,6 +54,16 @@ def test_what_is_no_dataset_is_a_line_and_exit_code_2(
         assert printed.err.count("\n") == 1
         assert printed.err.startswith(f"octsim: {tmp_path / name}: ")
         assert printed.out == ""
+
+
+def test_statuses_that_say_the_same_are_told_in_one_line() -> None:
+    visible, dark = (flags(FringeStatus, np.array(codes)) for codes in ([0, 0], [0, 2]))
+    given = {"first_status": visible, "status": dark, "other_status": visible}
+    found = xr.Dataset(
+        {name: ("x", *status) for name, status in given.items()}, attrs={"octsim_version": "1"}
+    )
+    _, *told = described(CATALOG["paths"], found)
+    assert told == ["first_status, other_status: visible 2", "status: visible 1, no light 1"]
 
 
 def test_a_status_is_counted_in_words_the_most_frequent_first() -> None:
