@@ -1,6 +1,6 @@
 """Which status says of a variable why values are missing, as CF's ancillary variables."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import IntEnum
 
 import numpy as np
@@ -227,6 +227,23 @@ TOLD_BY: Mapping[str, Mapping[str, str]] = {
 }  # fmt: skip
 """By stage, then by status: the variables of that stage whose values it says are missing, and why.
 A variable of several statuses is missing where any of them says so."""
+
+
+def first_reason(
+    reasons: Sequence[tuple[NDArray[np.bool_], IntEnum]], otherwise: IntEnum
+) -> NDArray[np.int64]:
+    """Return the code of the first of some reasons that holds at each place, or another code.
+
+    Parameters
+    ----------
+    reasons : sequence of tuple
+        Where each holds, of shapes that are broadcast together, and its code.
+    otherwise : IntEnum
+        The code where none does.
+    """
+    where, codes = zip(*reasons, strict=True)
+    found: NDArray[np.int64] = np.select(where, [np.int64(code) for code in codes], otherwise)
+    return found
 
 
 def statuses_of(stage: str, name: str) -> dict[str, str]:

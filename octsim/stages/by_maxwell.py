@@ -105,10 +105,7 @@ def exact_slopes(config: Config, foci: Array) -> ExactSlopes:
             for diameter, focus in zip(diameters[near].tolist(), foci[near].tolist(), strict=True)
         ]
         if any(found.status != AccuracyStatus.REACHED for found in spectra):
-            status, of_each[place] = (
-                ExactStatus.NOT_REACHED,
-                ExactSlopeStatus.NOT_REACHED,
-            )
+            status, of_each[place] = (ExactStatus.NOT_REACHED, ExactSlopeStatus.NOT_REACHED)
             continue
         slope[place] = local_slope(
             np.stack([found.intensity for found in spectra]), instrument.wavenumber,

@@ -117,11 +117,7 @@ def _differentiated(layout: Layout, stored: Stored, foci: Stored | None) -> Iter
             if span.start == 0:
                 exact = _exact(layout, at, foci)
             variables["exact_phase_slope"] = "diameter", exact.slope[span]
-            variables["exact_slope_status"] = (
-                "diameter",
-                exact.of_each[0][span],
-                exact.of_each[1],
-            )
+            variables["exact_slope_status"] = ("diameter", exact.of_each[0][span], exact.of_each[1])
             if span.stop == count:
                 variables["exact_status"] = (), *exact.status
         for name, values in slopes.items():
@@ -136,12 +132,7 @@ def _differentiated(layout: Layout, stored: Stored, foci: Stored | None) -> Iter
 def _exact(layout: Layout, at: Combination, stored: Stored) -> _Exact:
     """Return a combination's slopes by Maxwell's equations, and why there are none, if so."""
     # here, as without spectra there is no need of light
-    from octsim.stages.by_maxwell import (
-        ExactSlopeStatus,
-        ExactStatus,
-        exact_slopes,
-        not_compared,
-    )
+    from octsim.stages.by_maxwell import ExactSlopeStatus, ExactStatus, exact_slopes, not_compared
 
     foci = stored.part(at, names=("focus",))["focus"].values
     if at is layout.combinations[0]:

@@ -202,7 +202,8 @@ def test_frames_without_light_have_no_phase(tmp_path: Path, lab: Lab) -> None:
 
 def test_a_status_says_why_a_number_is_missing(tmp_path: Path, lab: Lab) -> None:
     lab.spectra[20:24] = lab.dark[:4]
-    found = measured(config_of(written(tmp_path, lab)))
+    narrower = {"wavelength": {"min": "690 nm", "max": "860 nm"}}
+    found = measured(config_of(written(tmp_path, lab), spectrum=narrower))
     assert found["source_power"].isnull().any()
     assert list(unexplained(found)) == []
 

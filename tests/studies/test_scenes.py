@@ -12,12 +12,7 @@ from octsim.figures.style import look
 from octsim.studies.scenes import cases as listed
 from octsim.studies.scenes.cases import AS_CONFIGURED, SCHEMES, Case, CaseStatus, cases
 from octsim.studies.scenes.study import scenes, summary
-from octsim.studies.scenes.tolerated import (
-    TOLERANCE,
-    ToleratedStatus,
-    tolerated,
-    tolerated_status,
-)
+from octsim.studies.scenes.tolerated import TOLERANCE, ToleratedStatus, tolerated, tolerated_status
 
 RUN = load_config({
     "spectrum": {"samples": 100},

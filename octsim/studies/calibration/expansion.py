@@ -18,11 +18,7 @@ from octsim.phase.rest_error import ErrorStatus, smallest_step, stated_change
 from octsim.studies.calibration.expansion_doubts import doubts as doubts
 from octsim.studies.calibration.expansion_doubts import named_samples, outliers_in
 from octsim.studies.calibration.expansion_fit import series_fit
-from octsim.studies.calibration.missing import (
-    SystematicStatus,
-    series_statuses,
-    systematic_status,
-)
+from octsim.studies.calibration.missing import SystematicStatus, series_statuses, systematic_status
 from octsim.studies.calibration.sensitivity import Expansion, matched, sensitivity_at, solved
 
 

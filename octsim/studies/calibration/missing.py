@@ -72,9 +72,7 @@ def series_statuses(
         Scatter at rest and smallest step, of one series or of each band's.
     """
     samples = np.select(
-        [np.isnan(phase), dropped],
-        [SampleStatus.MISSING, SampleStatus.LEFT_OUT],
-        SampleStatus.USED,
+        [np.isnan(phase), dropped], [SampleStatus.MISSING, SampleStatus.LEFT_OUT], SampleStatus.USED
     )
     given = np.where(np.isnan(scatter), ScatterStatus.NOT_NEEDED, ScatterStatus.KNOWN)
     unseen = np.where(np.isnan(step), StepStatus.NOT_SEEN, StepStatus.KNOWN)

@@ -18,14 +18,7 @@ from octsim.schemes.light import AccuracyStatus
 from octsim.stages.by_maxwell import ExactStatus
 from octsim.stages.focus_law import focus_line
 from octsim.stages.phase_slope import SlopeStatus, slope_status
-from octsim.studies.detector.cases import (
-    FALLOFFS,
-    Case,
-    JumpStatus,
-    LimitStatus,
-    cases,
-    radii_of,
-)
+from octsim.studies.detector.cases import FALLOFFS, Case, JumpStatus, LimitStatus, cases, radii_of
 from octsim.studies.detector.over_diameter import (
     jumps,
     mean_of_known,

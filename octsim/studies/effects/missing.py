@@ -12,11 +12,7 @@ from octsim.studies.effects.bench import Bench
 from octsim.studies.effects.changes import unwraps
 
 _CONFIGURED = "configured_slope_change"
-_KINDS = {
-    "": "mean_slope_change",
-    "local_": "slope_change_scatter",
-    "configured_": _CONFIGURED,
-}
+_KINDS = {"": "mean_slope_change", "local_": "slope_change_scatter", "configured_": _CONFIGURED}
 """Of each kind of measure one, by what its status is called before."""
 
 
@@ -54,11 +50,7 @@ def change_status(
 
 
 def change_statuses(
-    bench: Bench,
-    values: Mapping[str, Any],
-    measured: ArrayLike = True,
-    *,
-    noise: bool = False,
+    bench: Bench, values: Mapping[str, Any], measured: ArrayLike = True, *, noise: bool = False
 ) -> dict[str, Any]:
     """Return why measures are missing, by the statuses' names, each with its attributes.
 

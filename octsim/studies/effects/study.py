@@ -11,13 +11,7 @@ from octsim.optics.two_beams import predicted_phase_slope
 from octsim.schemes.light import AccuracyStatus
 from octsim.stages.focus_law import focus_line
 from octsim.studies.effects.bench import Bench, Result, bench_of, for_noise, measured
-from octsim.studies.effects.changes import (
-    change,
-    local_slopes,
-    mean_phase_slope,
-    stacked,
-    unwraps,
-)
+from octsim.studies.effects.changes import change, local_slopes, mean_phase_slope, stacked, unwraps
 from octsim.studies.effects.missing import ChangeStatus, change_status, change_statuses
 from octsim.studies.effects.needed import (
     LOCAL_TOLERANCE,
@@ -167,10 +161,7 @@ def _by_diameter(bench: Bench, results: list[Result]) -> dict[str, Any]:
     return {
         **{f"effect_{name}_change": (over, values) for name, values in found.items()},
         **{
-            f"{name}_change_status": (
-                over,
-                *flags(ChangeStatus, change_status(values, has)),
-            )
+            f"{name}_change_status": (over, *flags(ChangeStatus, change_status(values, has)))
             for name, values in found.items()
         },
     }

@@ -176,10 +176,7 @@ def _slopes(
         f"{prefix}phase_slope": (("estimator", "diameter"), slope, meaning),
         f"{prefix}scatter": ("estimator", residual.std(axis=1)),
         f"{prefix}largest_spike": ("estimator", residual[rows, spike]),
-        f"{prefix}largest_spike_diameter": (
-            "estimator",
-            np.where(known, diameter[spike], np.nan),
-        ),
+        f"{prefix}largest_spike_diameter": ("estimator", np.where(known, diameter[spike], np.nan)),
         f"{prefix}slope_status": (
             ("estimator", "diameter"),
             *flags(EstimateStatus, estimate_status(slope, compared)),

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.datasets.files import flags
+from octsim.datasets.statuses import first_reason
 from octsim.phase.derivatives import Array
 from octsim.studies.sides import SIDES
 
@@ -72,14 +73,5 @@ def response_statuses(
             (np.isnan(correlation), ResponseStatus.NOT_TOLD),
         ],
     }  # fmt: skip
-    return {name: (over, *flags(ResponseStatus, _first(those)))
+    return {name: (over, *flags(ResponseStatus, first_reason(those, ResponseStatus.KNOWN)))
             for (name, over), those in found.items()}  # fmt: skip
-
-
-def _first(reasons: Reasons) -> NDArray[np.int64]:
-    """Return the first of some reasons that holds at each place; known where none does."""
-    return np.select(
-        [where for where, _ in reasons],
-        [code for _, code in reasons],
-        ResponseStatus.KNOWN,
-    )

@@ -20,12 +20,7 @@ from octsim.schemes.light import AccuracyStatus
 from octsim.stages.focus_law import focus_line
 from octsim.studies.detector.over_diameter import mean_of_known, root_mean_square
 from octsim.studies.scenes.cases import SCHEMES, Case, CaseStatus, ChangeStatus, cases
-from octsim.studies.scenes.tolerated import (
-    TOLERANCE,
-    ToleratedStatus,
-    tolerated,
-    tolerated_status,
-)
+from octsim.studies.scenes.tolerated import TOLERANCE, ToleratedStatus, tolerated, tolerated_status
 from octsim.studies.validity.errors import ESTIMATORS, FOCUS_MODES, Seen, seen
 from octsim.studies.validity.study import windows
 
@@ -139,10 +134,7 @@ def _variables(
         "scene_phase_change": (("case", "scheme", "diameter"), moved),
         "tolerated": (("case", "scheme"), tolerated(every, slope)),
         "case_status": (("case", "scheme"), *flags(CaseStatus, measured)),
-        "change_status": (
-            ("case", "scheme", "diameter"),
-            *flags(ChangeStatus, changed),
-        ),
+        "change_status": (("case", "scheme", "diameter"), *flags(ChangeStatus, changed)),
         "mean_change_status": (kinds, *flags(MeanStatus, mean_status(mean))),
         "tolerated_status": (
             ("case", "scheme"),

@@ -36,9 +36,7 @@ def tolerated_status(every: Sequence[Case], slope: Array) -> NDArray[np.int64]:
         if other := _beside(every, row, case):
             off = held[other[0]] - held[row]
             found[row] = np.where(
-                np.isfinite(off).any(axis=-1),
-                ToleratedStatus.NO_CHANGE,
-                ToleratedStatus.NO_SLOPE,
+                np.isfinite(off).any(axis=-1), ToleratedStatus.NO_CHANGE, ToleratedStatus.NO_SLOPE
             )
             found[row][root_mean_square(off) > 0] = ToleratedStatus.KNOWN
     return found

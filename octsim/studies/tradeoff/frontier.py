@@ -81,10 +81,7 @@ def comparison(
         "rays_law_exponent": exponent,
         "rays_law_error": ("setting", np.where(by_rays, constant * segments**exponent, np.nan)),
         "target_error": ("target", targets),
-        "target_status": (
-            "target",
-            *flags(TargetStatus, target_status(rays_needed, needed)),
-        ),
+        "target_status": ("target", *flags(TargetStatus, target_status(rays_needed, needed))),
         "rays_segments": ("target", rays_needed),
         "rays_measured": ("target", np.array([int(measured) for _, measured in counted])),
         "paths_segments": ("target", needed),

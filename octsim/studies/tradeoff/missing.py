@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from octsim.datasets.files import flags
+from octsim.datasets.statuses import first_reason
 from octsim.studies.tradeoff.settings import Setting, is_of_the_trade, is_of_waves
 
 Array = NDArray[np.float64]
@@ -69,17 +70,9 @@ def setting_statuses(
         ],
     }
     return {
-        name: ("setting", *flags(SettingStatus, _first(*those))) for name, those in reasons.items()
+        name: ("setting", *flags(SettingStatus, first_reason(those, SettingStatus.MEASURED)))
+        for name, those in reasons.items()
     }
-
-
-def _first(*reasons: tuple[NDArray[np.bool_], SettingStatus]) -> NDArray[np.int64]:
-    """Return the first of some reasons that holds at each place; measured where none does."""
-    return np.select(
-        [where for where, _ in reasons],
-        [code for _, code in reasons],
-        SettingStatus.MEASURED,
-    )
 
 
 class TargetStatus(IntEnum):
