@@ -18,7 +18,8 @@ from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
 from octsim.schemes.table import LIGHT_PATHS, SCHEMES
 from octsim.stages.centres import FEWEST, CentreUse, doubts, failures, remedy, use_of
-from octsim.stages.gaussian_fits import FitStatus, StandardErrorStatus, fitted, law_diameters
+from octsim.stages.fit_errors import StandardErrorStatus
+from octsim.stages.gaussian_fits import FitStatus, fitted, law_diameters
 
 LawScheme = IntEnum("LawScheme", list(SCHEMES), start=0)  # type: ignore[misc]
 """The scheme whose intensities a law is fitted to."""

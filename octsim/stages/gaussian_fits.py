@@ -14,6 +14,7 @@ from octsim.datasets.files import flags
 from octsim.datasets.layout import Coordinate, Layout
 from octsim.datasets.reader import Stored
 from octsim.datasets.streams import Part, Stream, Streamed
+from octsim.stages.fit_errors import StandardErrorStatus, error_status
 
 _FLAT = 1e-12
 """Of the intensity: a range below it is rounding."""
@@ -43,16 +44,6 @@ class FitStatus(IntEnum):
     """There is no light at any focus."""
 
 
-class StandardErrorStatus(IntEnum):
-    """Whether the standard errors of a Gaussian fit are known."""
-
-    KNOWN = 0
-    NOT_FITTED = 1
-    """There is no fit; `FitStatus` says why."""
-    TOO_FEW = 2
-    """The foci do not tell: none is left over, or one alone is on the peak."""
-
-
 class GaussianFit(NamedTuple):
     """A Gaussian plus a constant, each with its standard error; NaN without a peak."""
 
@@ -67,10 +58,7 @@ class GaussianFit(NamedTuple):
     @property
     def error_status(self) -> StandardErrorStatus:
         """Whether the standard errors are known."""
-        if self.status != FitStatus.FITTED:
-            return StandardErrorStatus.NOT_FITTED
-        known = bool(np.isfinite(self.standard_errors).all())
-        return StandardErrorStatus.KNOWN if known else StandardErrorStatus.TOO_FEW
+        return error_status(self.standard_errors, fitted=self.status == FitStatus.FITTED)
 
 
 GAUSSIAN_PARAMETERS = ("centre", "width", "amplitude", "offset")

@@ -14,13 +14,8 @@ from swept import FOCI, xr_sweep
 
 from octsim.config.load import load_config
 from octsim.stages.centres import doubts_of_fits
-from octsim.stages.gaussian_fits import (
-    FitStatus,
-    StandardErrorStatus,
-    fit_gaussian,
-    gaussian,
-    gaussian_fits,
-)
+from octsim.stages.fit_errors import StandardErrorStatus
+from octsim.stages.gaussian_fits import FitStatus, fit_gaussian, gaussian, gaussian_fits
 
 
 @given(st.floats(0.5, 0.8), st.floats(0.008, 0.25), st.floats(1e-9, 1e3), st.floats(0, 1))
