@@ -26,8 +26,8 @@ PARTS: dict[tuple[str, str], frozenset[str]] = {
     ("diffraction", "peak_focus"): frozenset({"no_width"}),
     ("diffraction", "peak_height"): frozenset({"no_width"}),
     ("expansion", "measured_phase"): frozenset({"left_out"}),
-    ("tradeoff", "rays_segments"): frozenset({"not_reached"}),
-    ("tradeoff", "target_error"): frozenset({"not_reached"}),
+    ("tradeoff", "rays_segments"): frozenset({"none_tried"}),
+    ("tradeoff", "target_error"): frozenset({"none_tried"}),
     **{
         ("effects", f"{name}{noise}"): frozenset({"no_fringe"})
         for name in ("spectrum_change", "shape_change", "signal_ratio", "cost_ratio")

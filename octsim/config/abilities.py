@@ -172,7 +172,7 @@ def as_far_as(scheme: Scheme, config: Config) -> Config:
     if Ability.APLANATIC in asked:
         objective = objective.model_copy(update={"apodisation": None})
     if {Ability.ZERNIKE, Ability.ODD_ALONG} & asked:
-        objective = objective.model_copy(update={"zernike": ZernikeConfig(), "immersion": None})
+        objective = objective.model_copy(update={"zernike": ZernikeConfig()})
     if Ability.FOCAL_SHIFT in asked:
         objective = objective.model_copy(update={"focal_shift": None})
     if Ability.POLARISATION in asked:

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 from octsim.config.effects import zernike_name
 from octsim.config.following import calibration_diameters, fitted_diameters
-from octsim.config.immersion import of_slide
+from octsim.config.immersion import immersion_remarks, of_slide
 from octsim.config.models import Config
 from octsim.config.source import dim
 from octsim.schemes.table import SCHEMES
@@ -23,6 +23,7 @@ _LEAST_V = 0.6
 def light_remarks(config: Config) -> Iterator[str]:
     """Say what of the effects of a possible plain config is likely not meant."""
     yield from _aberrations(config)
+    yield from immersion_remarks(config)
     yield from _focal_shift(config)
     yield from _reference_arm(config)
     yield from _attenuation(config)

@@ -6,6 +6,7 @@ from typing import Any
 
 from octsim.config.additions import additions_to
 from octsim.config.derive import parts_of
+from octsim.config.immersion import immersion_disperses
 from octsim.config.light import FibreMode
 from octsim.config.models import Config
 from octsim.config.tree import pieces_of_tree
@@ -75,10 +76,12 @@ def point_cost(config: Config) -> PointCost:
 
 def light_keys(config: Config) -> tuple[str, ...]:
     """Return the dotted keys that the light of a point of a plain config depends on."""
-    scheme = scheme_of(config)
+    keys = scheme_of(config).keys
+    if immersion_disperses(config):
+        keys = (*keys, "spectrum.wavelength")
     if not sampled(config):
-        return scheme.keys
-    return tuple(dict.fromkeys((*scheme.keys, "polarisation", "spectrum")))
+        return keys
+    return tuple(dict.fromkeys((*keys, "polarisation", "spectrum")))
 
 
 def traced_keys(config: Config) -> Mapping[str, Any]:

@@ -12,7 +12,7 @@ from octsim.datasets.stage import LIGHT, RAYS, SUMMING, Stage
 
 _DECIDING = (
     "tracing.scheme", "tracing.preset", "sweep.focus", "scene.refractive_index", "polarisation",
-    "beam", "detector.falloff", "objective.pupil", "objective.focal_shift",
+    "beam", "detector.falloff", "objective.pupil", "objective.focal_shift", "objective.immersion",
     *FOLLOWING,
 )  # fmt: skip
 """Keys that decide which others are read."""

@@ -23,6 +23,8 @@ class SlideAberration(NamedTuple):
     """Of all of it over the pupil, µm."""
     remainder: float
     """Rms of what the terms leave out, µm."""
+    focus: float
+    """How much farther up the slide moves the focus, in a medium of its own index, µm."""
 
 
 def slide_aberration(
@@ -64,7 +66,8 @@ def slide_aberration(
 
     within = np.sqrt(slide**2 - s2)
     added, refocused = varying(thickness * (within - np.sqrt(immersion**2 - s2))), varying(within)
-    left = added - refocused * (weight @ (added * refocused)) / (weight @ refocused**2)
+    way = float(weight @ (added * refocused)) / float(weight @ refocused**2)
+    left = added - way * refocused
     terms = tuple(
         # Z(n, 0) is √(n + 1) times Legendre's polynomial of half its degree, in 2 ρ² - 1
         (n * (n + 1) // 2 + 1, float(sqrt(n + 1) * (weight * left) @ _legendre(n // 2, x)))
@@ -72,7 +75,7 @@ def slide_aberration(
     )
     whole = float(weight @ left**2)
     remainder = max(0.0, whole - sum(rms**2 for _, rms in terms))
-    return SlideAberration(terms, sqrt(whole), sqrt(remainder))
+    return SlideAberration(terms, sqrt(whole), sqrt(remainder), -way)
 
 
 def _legendre(degree: int, x: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -40,6 +40,8 @@ class FieldStatus(IntEnum):
     KNOWN = 0
     NOT_THERE = 1
     """The intensity is the mean of fewer fields, or is summed from the rays themselves."""
+    NO_FOCUS = 2
+    """There is no focus law."""
 
 
 @Streamed
@@ -96,7 +98,7 @@ def detections(
     def variables_of(found: Sequence[Light | Sampled], at: Combination) -> dict[str, Any]:
         rays = [one.rays if isinstance(one, Sampled) else one for one in found]
         outcomes = {"outcomes": (("diameter", "outcome"), _outcomes(rays))} if counted else {}
-        samples = _samples(found, at.config.spectrum.samples) if fields else {}
+        samples = _samples(found, rays, at.config.spectrum.samples) if fields else {}
         return _light_variables(rays) | outcomes | samples
 
     title = "Rays that reach the detector, for each diameter"
@@ -125,14 +127,21 @@ def _outcomes(found: Sequence[Light]) -> NDArray[np.int64]:
     return np.stack([none if light.outcomes is None else light.outcomes for light in found])
 
 
-def _samples(found: Sequence[Light | Sampled], number: int) -> dict[str, Any]:
+def _samples(
+    found: Sequence[Light | Sampled], rays: Sequence[Light], number: int
+) -> dict[str, Any]:
     nothing = complex(np.nan, np.nan)
     values, error = np.full((len(found), FIELDS, number), nothing), np.full(len(found), np.nan)
     for row, one in enumerate(found):
         if isinstance(one, Sampled):
             values[row, : len(one.values)], error[row] = one.values, one.error
     there = np.isfinite(values).all(axis=-1)
-    status = np.where(there, FieldStatus.KNOWN, FieldStatus.NOT_THERE)
+    no_focus = np.array([one.status == AccuracyStatus.NO_FOCUS for one in rays])
+    status = np.select(
+        [there, np.broadcast_to(no_focus[:, np.newaxis], there.shape)],
+        [FieldStatus.KNOWN, FieldStatus.NO_FOCUS],
+        FieldStatus.NOT_THERE,
+    )
     return {
         "field_status": (_SAMPLE[:2], *flags(FieldStatus, status)),
         "field_real": (_SAMPLE, values.real),

@@ -33,6 +33,8 @@ class SlopeStatus(IntEnum):
     """That of a diameter beside it, which the difference needs, has none."""
     BELOW_ROUNDING = 3
     """The component holds nothing but rounding, there or beside."""
+    NO_ESTIMATE = 4
+    """The estimator has no phase of the spectrum, there or beside; estimate_status says why."""
 
 
 class _Exact(NamedTuple):
@@ -143,7 +145,9 @@ def _exact(layout: Layout, at: Combination, stored: Stored) -> _Exact:
     return _Exact(found.slope, flags(ExactSlopeStatus, found.of_each), status)
 
 
-def slope_status(slope: NDArray[np.float64], visible: NDArray[np.bool_]) -> NDArray[np.int64]:
+def slope_status(
+    slope: NDArray[np.float64], visible: NDArray[np.bool_], otherwise: SlopeStatus
+) -> NDArray[np.int64]:
     """Return the `SlopeStatus` of slopes (D, ...), of which some diameters have a phase.
 
     Parameters
@@ -152,6 +156,8 @@ def slope_status(slope: NDArray[np.float64], visible: NDArray[np.bool_]) -> NDAr
         NaN where there is none.
     visible : ndarray of bool, shape (D,) or that of the slopes
         Whether there is a phase.
+    otherwise : SlopeStatus
+        Why there is none where there are phases.
     """
     visible = visible.reshape(*visible.shape, *(1,) * (slope.ndim - visible.ndim))
     end = np.ones_like(visible[:1])
@@ -159,7 +165,7 @@ def slope_status(slope: NDArray[np.float64], visible: NDArray[np.bool_]) -> NDAr
     return np.select(
         [np.isfinite(slope), ~visible, ~beside],
         [SlopeStatus.KNOWN, SlopeStatus.NO_FRINGE, SlopeStatus.NO_FRINGE_BESIDE],
-        SlopeStatus.BELOW_ROUNDING,
+        otherwise,
     )
 
 
@@ -181,11 +187,14 @@ def _slopes(config: Config, part: xr.Dataset, before: int, span: slice) -> dict[
     ideal = fourier_components(shaped, config.processing)
     ideals = phase_slopes(diameter, np.abs(ideal), np.angle(ideal))
     slope, ideal_slope = found.strongest, ideals.strongest
+    otherwise = SlopeStatus.BELOW_ROUNDING
     if not by_components(config):
+        otherwise = SlopeStatus.NO_ESTIMATE
         slope = slope_of(diameter, part["estimated_phase"].values)
         ideal_slope = slope_of(diameter, ideal_phases(config, spectra, diameter, k))
-    of_slope, of_component = (
-        flags(SlopeStatus, slope_status(one, visible)[inner]) for one in (slope, found.by_component)
+    of_slope = flags(SlopeStatus, slope_status(slope, visible, otherwise)[inner])
+    of_component = flags(
+        SlopeStatus, slope_status(found.by_component, visible, SlopeStatus.BELOW_ROUNDING)[inner]
     )
     return {
         **fringe,

@@ -146,9 +146,10 @@ def test_the_fringe_of_a_gap_is_not_taken_for_the_neuron_s() -> None:
 def test_a_slope_s_status_says_what_it_lacks() -> None:
     visible = np.array([True, True, False, True, True, True])
     slope = np.array([24.0, np.nan, np.nan, np.nan, 24.0, np.nan])
-    assert slope_status(slope, visible).tolist() == [
+    rounding = SlopeStatus.BELOW_ROUNDING
+    assert slope_status(slope, visible, rounding).tolist() == [
         SlopeStatus.KNOWN, SlopeStatus.NO_FRINGE_BESIDE, SlopeStatus.NO_FRINGE,
-        SlopeStatus.NO_FRINGE_BESIDE, SlopeStatus.KNOWN, SlopeStatus.BELOW_ROUNDING,
+        SlopeStatus.NO_FRINGE_BESIDE, SlopeStatus.KNOWN, rounding,
     ]  # fmt: skip
-    of_each = slope_status(np.stack([slope, slope], axis=1), visible)
-    assert of_each[:, 1].tolist() == slope_status(slope, visible).tolist()
+    of_each = slope_status(np.stack([slope, slope], axis=1), visible, rounding)
+    assert of_each[:, 1].tolist() == slope_status(slope, visible, rounding).tolist()

@@ -36,6 +36,19 @@ def test_a_reference_arm_is_eq_1_of_the_length_one_way(found: xr.Dataset) -> Non
     assert intensity == pytest.approx(closed, abs=1e-12 * bright)
 
 
+@pytest.mark.filterwarnings("ignore::octsim.base.errors.OctsimWarning")
+def test_an_immersion_s_aberration_is_not_of_the_arm(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(michelson, "STEPS", 3)
+    slide = {"medium": "glass", "thickness": "170 um"}
+    oil = load_config(RUN.to_dict(), {
+        "objective": {"immersion": "water"}, "scene": {"layers": [slide, "water"]},
+    })  # fmt: skip
+    found, plain = (michelson.michelson(one).intensity for one in (oil, RUN))
+    assert found.tobytes() == plain.tobytes()
+
+
 def test_a_moved_mirror_shows_every_half_wavelength_and_the_band_its_coherence(
     found: xr.Dataset,
 ) -> None:

@@ -17,6 +17,11 @@ def _anything(_: Config) -> tuple[float, float]:
     return -math.inf, math.inf
 
 
+def above_aperture(config: Config, index: float) -> tuple[float, float]:
+    """Return the limits of an index that the numerical aperture stays below."""
+    return max(1.0, (index + config.objective.numerical_aperture) / 2), 10.0
+
+
 class Parameter(NamedTuple):
     """Something that may be off, and how a config is changed to have it so."""
 

@@ -8,34 +8,36 @@ from octsim.config.following import calibration_diameters
 from octsim.config.light import FibreMode, GaussianFill
 from octsim.config.models import Config
 from octsim.config.pixels import PixelTable
+from octsim.config.scene_checks import least_index
 from octsim.config.scheme import scheme_of
 from octsim.config.units import format_angle, format_length
 from octsim.instrument.build import detector_of
 from octsim.schemes.table import Ability
-from octsim.studies.calibration.parameter import Overlay, Parameter, index_of, keyed
+from octsim.studies.calibration.parameter import (
+    Overlay,
+    Parameter,
+    above_aperture,
+    index_of,
+    keyed,
+)
 from octsim.studies.calibration.scene_parameters import scene_parameter
 
 _LEAST_NA = 1e-3
 
 
-def _above_aperture(index: float, aperture: float) -> tuple[float, float]:
-    """Return the limits of an index that a numerical aperture stays below."""
-    return max(1.0, (index + aperture) / 2), 10.0
-
-
 def _glass_limits(config: Config) -> tuple[float, float]:
-    return _above_aperture(config.objective_index, config.objective.numerical_aperture)
+    return above_aperture(config, config.objective_index)
 
 
 def _water_limits(config: Config) -> tuple[float, float]:
-    if not _of_waves(config):
-        return 1.0, 10.0
-    return _above_aperture(config.host_index, config.objective.numerical_aperture)
+    return above_aperture(config, config.host_index) if _of_waves(config) else (1.0, 10.0)
 
 
 def _aperture_limits(config: Config) -> tuple[float, float]:
     aperture = config.objective.numerical_aperture
     above = [config.objective_index, *([config.host_index] if _of_waves(config) else [])]
+    if immersion := config.objective.immersion:
+        above.append(least_index(config, immersion))
     return _LEAST_NA, aperture + 0.49 * (min(above) - aperture)
 
 

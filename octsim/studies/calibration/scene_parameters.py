@@ -11,7 +11,12 @@ from octsim.config.models import Config
 from octsim.config.scene_keys import quantity_of, scene_values
 from octsim.config.scheme import scheme_of
 from octsim.schemes.table import Ability
-from octsim.studies.calibration.parameter import Overlay, Parameter, index_of
+from octsim.studies.calibration.parameter import (
+    Overlay,
+    Parameter,
+    above_aperture,
+    index_of,
+)
 
 _INDEX = "scene.refractive_index."
 _FARTHEST = 3.0
@@ -47,7 +52,15 @@ def scene_parameter(key: str) -> Parameter:
     """Return the parameter that a number of the scene is; only where it is one it counts."""
     if key.startswith(_INDEX):
         medium = key.removeprefix(_INDEX)
-        return index_of(lambda _: medium, counts=lambda config: key in scene_values(config))
+
+        def limits(config: Config) -> tuple[float, float]:
+            if medium != config.objective.immersion:
+                return -math.inf, math.inf
+            return above_aperture(config, scene_values(config)[key])
+
+        return index_of(
+            lambda _: medium, limits=limits, counts=lambda config: key in scene_values(config)
+        )
     kind, quantity = _kind_of(key), quantity_of(key)
     unit = "1" if quantity is None else quantity.unit
 

@@ -179,7 +179,8 @@ def _of_slopes(found: Sequence[Seen], diameter: Array, predicted: float) -> dict
     def told(phase: Array) -> NDArray[np.int64]:
         slope = over_diameter(diameter, phase, predicted).slope
         first = np.moveaxis(slope, -1, 0), np.moveaxis(np.isfinite(phase), -1, 0)
-        status: NDArray[np.int64] = np.moveaxis(slope_status(*first), 0, -1)
+        found = slope_status(*first, SlopeStatus.NO_ESTIMATE)
+        status: NDArray[np.int64] = np.moveaxis(found, 0, -1)
         return status
 
     rays = _over(told(_last([one.phase for one in found])))

@@ -102,7 +102,8 @@ def other_immersion(by: float, thickness: str) -> OverlayOf:
     """Put an immersion below a slide, of an index that is higher by so much."""
 
     def overlay(config: Config) -> Overlay | None:
-        if config.objective.immersion is not None:
+        known = config.scene.refractive_index.of
+        if config.objective.immersion is not None or "immersion" in known:
             return None
         slide, *above = config.to_dict()["scene"]["layers"]
         return {

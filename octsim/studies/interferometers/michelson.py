@@ -38,7 +38,10 @@ def michelson(config: Config) -> Michelson:
     swept = {"medium": water, "thickness": "swept"}
     scene = {"layers": [glass, swept, water], "cylinders": []}
     # the pupil is even and the focus on the plane: all rays return to it in phase
-    alone = changed(counting_rays(config), {"scene": scene, "interferometer": {"reference": None}})
+    alone = changed(
+        counting_rays(config),
+        {"scene": scene, "interferometer": {"reference": None}, "objective": {"immersion": None}},
+    )
     instrument = Instrument(alone)
     k = instrument.wavenumber
     amplitude = float(np.sqrt(instrument.spectrum(1.0, 0.0).intensity.mean()))

@@ -79,7 +79,7 @@ class TargetStatus(IntEnum):
     """Whether it is known what an error costs."""
 
     KNOWN = 0
-    NOT_REACHED = 1
+    NONE_TRIED = 1
     """No accuracy of light paths that was tried has as small an error."""
     TOO_FEW = 2
     """Too few numbers of rays were tried to tell what counted rays need."""
@@ -89,6 +89,6 @@ def target_status(rays_needed: Array, needed: Array) -> NDArray[np.int64]:
     """Return the `TargetStatus` of the segments that rays and light paths need for errors (T,)."""
     return np.select(
         [np.isnan(rays_needed), np.isnan(needed)],
-        [TargetStatus.TOO_FEW, TargetStatus.NOT_REACHED],
+        [TargetStatus.TOO_FEW, TargetStatus.NONE_TRIED],
         TargetStatus.KNOWN,
     )
