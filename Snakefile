@@ -13,7 +13,10 @@ import os
 import shlex
 import sys
 from collections.abc import Callable
+from contextlib import suppress
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 # a script of the user's that is called octsim.py too, here or on PYTHONPATH, is not the package
 for place in sys.path[:]:
@@ -39,6 +42,7 @@ from octsim.base.say import noting_for
 from octsim.cli.job_server import PYTHON, SOCKET, start
 from octsim.cli.told import edit_of, result_of
 from octsim.config.derive import parts_of
+from octsim.config.handed import FOLDER as LOOKED
 from octsim.config.load import load_and_tell
 from octsim.config.models import Config
 from octsim.config.told import told
@@ -65,6 +69,12 @@ def say(line: str) -> None:
 if workflow.cores is not None and workflow.cores < 1:
     sys.exit(f"octsim: --cores: {workflow.cores} given; give 1 or more")
 noting_for("reading")
+if workflow.is_main_process and LOOKED not in os.environ:
+    # jobs need not look at a grid's combinations again, on whatever node they are
+    with suppress(OSError):  # where nothing can be written it is said below
+        os.makedirs(".snakemake", exist_ok=True)
+        looked = TemporaryDirectory(prefix="looked-", dir=".snakemake")
+        os.environ[LOOKED] = os.path.abspath(looked.name)
 try:
     # the files themselves too, as snakemake's own reading lets a key stand twice
     run, said = load_and_tell(*workflow.configfiles, config)
@@ -130,6 +140,7 @@ def made_from(code: str, *keys: str) -> dict[str, object]:
     return {"code": code, **parts_of(run.to_dict(), *keys)}
 
 
+@cache  # as for sources
 def made_from_rows(rows: tuple[Stage, ...]) -> dict[str, object]:
     """Return what the datasets of a rule follow from, and the figures that it draws."""
     codes = [code_of(row.name, run) for row in rows]
@@ -146,6 +157,7 @@ def when_asked(work: Callable[..., object], *arguments: object) -> Callable[[obj
     return lambda _: work(*arguments)
 
 
+@cache  # once for all shares of a stage, of which there may be thousands
 def sources(rows: tuple[Stage, ...]) -> dict[str, object]:
     """Return the datasets that a rule's are made from, by their names."""
     names = {name for row in rows for name in inputs_of(row, run)} - {row.name for row in rows}

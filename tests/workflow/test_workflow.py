@@ -411,6 +411,22 @@ def test_an_edit_of_the_grid_reruns_only_what_has_the_key(grid: Checkout) -> Non
     assert grid.would_run(rewritten) == set()
 
 
+def test_what_is_found_of_a_grid_lies_where_every_node_sees_it_until_its_run_ends(
+    tmp_path: Path,
+) -> None:
+    checkout = Checkout(tmp_path)
+    script = tmp_path / "workflow" / "scripts" / "job.py"
+    script.write_text(
+        "import os, pathlib; found = pathlib.Path(os.environ['OCTSIM_LOOKED']).iterdir()\n"
+        "pathlib.Path('found').write_text('\\n'.join(map(str, found)))"
+    )
+    checkout.snakemake(GRID, "--cores", "1", "results/grid/detections.nc")
+    (found,) = map(Path, (tmp_path / "found").read_text().splitlines())
+    assert found.parents[1] == tmp_path / ".snakemake"
+    assert found.suffix == ".json"
+    assert not found.parent.exists()
+
+
 def test_an_estimate_is_printed_first_and_a_large_run_wants_to_be_confirmed(tmp_path: Path) -> None:
     checkout = Checkout(tmp_path)
     large = merged(GRID, {"sweep": {"diameters": {"num": 1_000_000}}, "tracing": {"rays": 3000}})
