@@ -17,8 +17,8 @@ import yaml
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
+from checkout import TINY, Checkout  # noqa: E402
 from cluster import cluster  # noqa: E402
-from test_workflow import TINY, Checkout  # noqa: E402
 
 WAIT = int(sys.argv[1]) if len(sys.argv) > 1 else 10  # s until Slurm is asked first
 PARTS = ("queued", "outer snakemake", "inner snakemake", "script", "unnoticed", "overhead")
@@ -35,9 +35,9 @@ def run(checkout: Checkout) -> dict[str, dict[str, float]]:
     submitted: dict[str, tuple[float, Path]] = {}
     noticed: dict[str, float] = {}
     with (
-        cluster() as environment,
+        cluster() as slurm,
         subprocess.Popen(
-            command, cwd=checkout.folder, env=environment, text=True,
+            command, cwd=checkout.folder, env=slurm.environment, text=True,
             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
         ) as running,
     ):  # fmt: skip

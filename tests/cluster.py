@@ -1,20 +1,24 @@
-"""A private Slurm of one node, in a folder of its own: started, given, and stopped again."""
+"""A private Slurm on this machine, in a folder of its own: started, given, and stopped again."""
 
 import getpass
 import os
 import secrets
 import shutil
-import signal
 import socket
 import subprocess
+import sys
 import tempfile
 import time
-from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from typing import NamedTuple
 
-CORES = 2
-MEMORY = 4000  # MB that jobs share
+from psutil import NoSuchProcess, Process
+
+CORES = 2  # of a node
+MEMORY = 4000  # MB that jobs on a node share
+SILENCE = 15  # s, until a node that does not answer is held for dead
 _PATIENCE = 30.0  # s, until a daemon answers
 _PROGRAMS = ("munged", "munge", "slurmctld", "slurmd", "sbatch", "squeue", "sinfo", "scontrol")
 _PATH = os.pathsep.join([os.environ.get("PATH", os.defpath), "/usr/local/sbin", "/usr/sbin"])
@@ -24,18 +28,17 @@ _PATH = os.pathsep.join([os.environ.get("PATH", os.defpath), "/usr/local/sbin", 
 _CONFIG = """\
 ClusterName=octsim
 SlurmctldHost={host}(127.0.0.1)
-SlurmctldPort={ports[0]}
-SlurmdPort={ports[1]}
+SlurmctldPort={port}
 SlurmUser={user}
 SlurmdUser={user}
 AuthType=auth/munge
 AuthInfo=socket={folder}/munge/socket
 StateSaveLocation={folder}/state
-SlurmdSpoolDir={folder}/spool
+SlurmdSpoolDir={folder}/%n
 SlurmctldPidFile={folder}/slurmctld.pid
-SlurmdPidFile={folder}/slurmd.pid
+SlurmdPidFile={folder}/%n.pid
 SlurmctldLogFile={folder}/slurmctld.log
-SlurmdLogFile={folder}/slurmd.log
+SlurmdLogFile={folder}/%n.log
 PlugStackConfig={folder}/plugstack.conf
 MailProg=/bin/true
 MpiDefault=none
@@ -53,10 +56,25 @@ AccountingStorageType=accounting_storage/none
 JobCompType=jobcomp/none
 JobRequeue=0
 KillWait=2
+SlurmdTimeout={silence}
 MinJobAge=600
 SlurmdParameters=config_overrides
-NodeName={host} NodeAddr=127.0.0.1 CPUs={cores} RealMemory={memory} State=UNKNOWN
-PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
+PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
+"""
+_NODE = (
+    "NodeName={name} NodeHostname={host} NodeAddr=127.0.0.1 Port={port} CPUs={cores} "
+    "RealMemory={memory} State=UNKNOWN\n"
+)
+# What a daemon starts stays below its keeper, where its own parent has ended too, and is found.
+_KEEPER = """\
+import ctypes, os, sys
+ctypes.CDLL(None).prctl(36, 1)  # PR_SET_CHILD_SUBREAPER
+os.posix_spawn(sys.argv[1], sys.argv[1:], os.environ)
+try:
+    while os.wait():
+        pass
+except ChildProcessError:
+    pass
 """
 
 
@@ -64,12 +82,25 @@ class ClusterError(Exception):
     """Slurm can't be started here; its text is one line that says why."""
 
 
+class Cluster(NamedTuple):
+    """A Slurm that runs."""
+
+    environment: Mapping[str, str]
+    """In which its commands find it."""
+    nodes: Mapping[str, subprocess.Popen[bytes]]
+    """By name, what each runs in."""
+
+    def kill(self, node: str) -> None:
+        """Let a node die: its daemon and its jobs are killed at once, and nothing tells Slurm."""
+        _kill(self.nodes[node])
+
+
 @contextmanager
-def cluster() -> Iterator[Mapping[str, str]]:
-    """Start a Slurm of one node; give the environment in which its commands find it.
+def cluster(nodes: int = 1) -> Iterator[Cluster]:
+    """Start a Slurm of so many nodes, named node1 and so on, all of them on this machine.
 
     Nothing outside a temporary folder is read or written, and another Slurm of the machine is left
-    alone. All that was started is stopped at the end, jobs that still run too.
+    alone. All that was started is killed at the end, jobs that still run too.
 
     Raises
     ------
@@ -79,26 +110,23 @@ def cluster() -> Iterator[Mapping[str, str]]:
     missing = [name for name in (*_PROGRAMS, "srun") if shutil.which(name, path=_PATH) is None]
     if missing:
         raise ClusterError(f"{missing[0]} is not installed (Debian: slurm-wlm, munge)")
+    names = [f"node{number}" for number in range(1, nodes + 1)]
     with ExitStack() as stack:
         # below /tmp itself: a socket's name has 107 characters at most
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="octsim-")))
         folder = folder.resolve()
-        for part in ("munge", "state", "spool", "bin"):
+        for part in ("munge", "state", "bin", *names):
             (folder / part).mkdir(mode=0o755)
         folder.chmod(0o755)
         _authenticate(folder, stack)
-        environment = _configure(folder)
-        with _free_ports() as ports:
-            text = _CONFIG.format(
-                host=socket.gethostname().split(".")[0], ports=ports, user=getpass.getuser(),
-                folder=folder, cores=CORES, memory=MEMORY,
-            )  # fmt: skip
-            (folder / "slurm.conf").write_text(text)
-        for daemon in ("slurmctld", "slurmd"):
-            _start(folder, stack, environment, daemon, "-D")
-        stack.callback(_end_jobs, environment)
-        _wait_for(folder, environment, ["sinfo", "--noheader", "--format=%T"], "idle")
-        yield environment
+        environment = _configure(folder, names)
+        _start(folder, stack, environment, "slurmctld", "-D")
+        running = {
+            name: _start(folder, stack, environment, "slurmd", "-D", "-N", name) for name in names
+        }
+        idle = ["sinfo", "--noheader", "--states=idle", "--format=%D"]
+        _wait_for(folder, environment, idle, str(nodes))
+        yield Cluster(environment, running)
 
 
 def _authenticate(folder: Path, stack: ExitStack) -> None:
@@ -116,10 +144,18 @@ def _authenticate(folder: Path, stack: ExitStack) -> None:
     _wait_for(folder, {"PATH": _PATH}, command, "MUNGE:")
 
 
-def _configure(folder: Path) -> dict[str, str]:
+def _configure(folder: Path, names: Sequence[str]) -> dict[str, str]:
     """Give the environment in which Slurm's commands find this folder's."""
     (folder / "plugstack.conf").touch()
     conf = folder / "slurm.conf"
+    host = socket.gethostname().split(".")[0]
+    with _free_ports(1 + len(names)) as (port, *ports):
+        text = _CONFIG.format(
+            host=host, port=port, user=getpass.getuser(), folder=folder, silence=SILENCE
+        )
+        for name, own in zip(names, ports, strict=True):
+            text += _NODE.format(name=name, host=host, port=own, cores=CORES, memory=MEMORY)
+        conf.write_text(text)
     # SLURM_CONF alone is not enough: snakemake's job steps call srun without any SLURM_ variable
     srun = folder / "bin" / "srun"
     real = shutil.which("srun", path=_PATH)
@@ -135,9 +171,9 @@ def _configure(folder: Path) -> dict[str, str]:
 
 
 @contextmanager
-def _free_ports() -> Iterator[list[int]]:
+def _free_ports(count: int) -> Iterator[list[int]]:
     with ExitStack() as stack:
-        sockets = [stack.enter_context(socket.socket()) for _ in range(2)]
+        sockets = [stack.enter_context(socket.socket()) for _ in range(count)]
         for one in sockets:
             one.bind(("127.0.0.1", 0))
         yield [one.getsockname()[1] for one in sockets]
@@ -145,25 +181,28 @@ def _free_ports() -> Iterator[list[int]]:
 
 def _start(
     folder: Path, stack: ExitStack, environment: Mapping[str, str], daemon: str, *arguments: str
-) -> None:
-    """Start a daemon in the foreground, to be stopped when the stack is left."""
+) -> subprocess.Popen[bytes]:
+    """Start a daemon in the foreground, to be killed when the stack is left; give its keeper."""
     program = shutil.which(daemon, path=_PATH)
     assert program is not None
-    with (folder / f"{daemon}.out").open("wb") as said:
-        started = subprocess.Popen(
-            [program, *arguments], env=environment, cwd=folder, start_new_session=True,
+    with (folder / f"{daemon}.out").open("ab") as said:
+        keeper = subprocess.Popen(
+            [sys.executable, "-c", _KEEPER, program, *arguments],
+            env=environment, cwd=folder, start_new_session=True,
             stdin=subprocess.DEVNULL, stdout=said, stderr=said,
         )  # fmt: skip
+    stack.callback(_kill, keeper)
+    return keeper
 
-    def stop() -> None:
-        started.terminate()
-        try:
-            started.wait(10)
-        except subprocess.TimeoutExpired:
-            started.send_signal(signal.SIGKILL)
-            started.wait()
 
-    stack.callback(stop)
+def _kill(keeper: subprocess.Popen[bytes]) -> None:
+    """Kill a daemon and all that came of it, parents first: none is left to tell of an end."""
+    while keeper.poll() is None:
+        for one in Process(keeper.pid).children(recursive=True):
+            with suppress(NoSuchProcess):
+                one.kill()
+        with suppress(subprocess.TimeoutExpired):
+            keeper.wait(0.1)
 
 
 def _wait_for(
@@ -182,18 +221,3 @@ def _wait_for(
     lines = [line for log in logs for line in log.read_text(errors="replace").splitlines()]
     errors = [line for line in lines if "error" in line.lower()] or [done.stderr.strip() or "none"]
     raise ClusterError(f"no answer of {command[0]} in {_PATIENCE:g} s; last error: {errors[-1]}")
-
-
-def _end_jobs(environment: Mapping[str, str]) -> None:
-    """End jobs that still run, before the daemons that could end them."""
-    every = ["scancel", "--signal=KILL", "--full", f"--user={getpass.getuser()}"]
-    for command in (every, [one for one in every if "signal" not in one and one != "--full"]):
-        subprocess.run(command, env=environment, capture_output=True, check=False, timeout=30)
-    until = time.monotonic() + 10
-    while time.monotonic() < until:
-        left = subprocess.run(
-            ["squeue", "--noheader"], env=environment, capture_output=True, check=False, timeout=30
-        )
-        if not left.stdout.strip():
-            return
-        time.sleep(0.1)

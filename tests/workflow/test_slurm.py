@@ -1,6 +1,6 @@
 """A run on a cluster: jobs that fail in each way are tried again, and the bits are the same.
 
-`make test-slurm` runs these on a private Slurm of one node.
+`make test-slurm` runs these on a private Slurm of one node, and of two where one dies.
 """
 
 import os
@@ -9,13 +9,14 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
 from checkout import GRID, TINY, Checkout, counts, merged
-from cluster import ClusterError, cluster
+from cluster import Cluster, ClusterError, cluster
 
 pytestmark = pytest.mark.skipif(
     "OCTSIM_SLURM" not in os.environ, reason="OCTSIM_SLURM is not set; run by `make test-slurm`"
@@ -26,13 +27,25 @@ PROFILE = ("--workflow-profile", "profiles/slurm", *SOON)
 _PATIENCE = 180.0  # s
 
 
-@pytest.fixture(scope="module")
-def slurm() -> Iterator[Mapping[str, str]]:
+@contextmanager
+def cluster_or_none(nodes: int) -> Iterator[Cluster]:
     try:
-        with cluster() as environment:
-            yield environment
+        with cluster(nodes) as started:
+            yield started
     except ClusterError as error:
         pytest.skip(f"Slurm can't be started here: {error}")
+
+
+@pytest.fixture(scope="module")
+def slurm() -> Iterator[Mapping[str, str]]:
+    with cluster_or_none(1) as started:
+        yield started.environment
+
+
+@pytest.fixture
+def two_nodes() -> Iterator[Cluster]:
+    with cluster_or_none(2) as started:
+        yield started
 
 
 def at_start(checkout: Checkout, stage: str, statement: str) -> None:
@@ -76,10 +89,14 @@ def in_full(checkout: Checkout) -> str:
     return "".join(file.read_text(encoding="utf-8") for file in sorted(logs))
 
 
-def state_of(slurm: Mapping[str, str], job: str) -> str:
-    command = ["squeue", "--states=all", "--noheader", f"--jobs={job}", "--format=%T"]
+def told_of(slurm: Mapping[str, str], job: str, form: str) -> str:
+    command = ["squeue", "--states=all", "--noheader", f"--jobs={job}", f"--format={form}"]
     done = subprocess.run(command, env=slurm, capture_output=True, text=True, check=True)
     return done.stdout.strip()
+
+
+def state_of(slurm: Mapping[str, str], job: str) -> str:
+    return told_of(slurm, job, "%T")
 
 
 def caught(checkout: Checkout, slurm: Mapping[str, str], *files: str) -> str:
@@ -216,3 +233,48 @@ def test_a_killed_run_s_job_ends_with_the_next_run_which_has_the_same_bits(
     run(checkout, slurm, *arguments)
     assert state_of(slurm, orphan) == "FAILED"
     assert checkout.results() == {"tiny/focus_scan.nc": local["tiny/focus_scan.nc"]}
+
+
+def on_a_node_that_dies(
+    cluster: Cluster, checkout: Checkout, stage: str, *arguments: str, **environment: str
+) -> str:
+    """Kill the node that a stage's job is on; give what else the run that goes on wrote."""
+    at_start(checkout, stage, the_first_time("waits", "time.sleep(600)"))
+    slurm = {**cluster.environment, **environment}
+    started = start(checkout, slurm, *PROFILE, *arguments)
+    job = caught(checkout, slurm, "waits")
+    dead = told_of(slurm, job, "%N")
+    cluster.kill(dead)
+    said, _ = started.communicate()
+    assert started.returncode == 0, said
+    nodes = subprocess.run(
+        ["sinfo", "--Node", "--noheader", "--format=%N %T"],
+        env=slurm, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert f"{dead} down*" in nodes.stdout.splitlines()  # noticed by Slurm; the others went on
+    return in_full(checkout)
+
+
+def test_a_run_whose_node_dies_goes_on_on_the_other_to_the_same_bits(
+    two_nodes: Cluster, local: dict[str, bytes], tmp_path: Path
+) -> None:
+    checkout = Checkout(tmp_path)
+    told = on_a_node_that_dies(two_nodes, checkout, "detections")
+    assert checkout.results() == local
+    assert "SLURM status is: 'NODE_FAIL'" in told
+    assert told.count("Trying to restart job") == 1
+
+
+def test_a_job_that_slurm_itself_queues_again_when_its_node_dies_is_waited_for(
+    two_nodes: Cluster, local: dict[str, bytes], tmp_path: Path
+) -> None:
+    checkout = Checkout(tmp_path)
+    told = on_a_node_that_dies(
+        two_nodes, checkout, "focus_sweep", "--until", "focus_law",
+        SBATCH_REQUEUE="1",  # as most clusters have it: JobRequeue, which the private one has not
+    )  # fmt: skip
+    made = checkout.results()
+    assert "tiny/focus_law.nc" in made
+    assert made == {name: local[name] for name in made}
+    assert "Trying to restart job" not in told
+    assert told.count("has been submitted with SLURM jobid") == 2
