@@ -13,8 +13,9 @@
 # make bench-growth                           how cost grows with points, rays, combinations, minutes
 # make bench-peers                            beside other codes and methods, optional, minutes
 # make slurm                                  installs what runs on a cluster need besides
-# make test-slurm                             the same results on a private Slurm of one node
+# make test-slurm                             the same results on a private Slurm, also if a node dies
 # make bench-slurm                            what Slurm adds to each job
+# make bench-scheduler                        what 10 000 jobs ask of a scheduler, a quarter of an hour
 # make kills                                  30 kills at random moments, 30 same results
 # make soak [MINUTES=20]                      random configs under kills, signals, full disks, optional
 # make mutants [NUMBER=300]                   wrong changes to the package that no test notices, long
@@ -38,7 +39,8 @@ export GIVEN_INTO := $(value INTO)
 TESTS = $(BIN)/pytest -n 2 --dist loadscope --no-loadscope-reorder
 
 .PHONY: results archive reproduce test test-all test-processors test-pythons lint format docs site bench \
-	bench-sweeps bench-growth bench-peers kills soak mutants lock slurm test-slurm bench-slurm clean
+	bench-sweeps bench-growth bench-peers kills soak mutants lock slurm test-slurm bench-slurm \
+	bench-scheduler clean
 results: .venv/run
 	@exec $(BIN)/octsim run "$$GIVEN_CONFIG" --cores "$(CORES)"
 
@@ -101,10 +103,13 @@ slurm: .venv/slurm
 	touch $@
 
 test-slurm: .venv/dev .venv/slurm
-	OCTSIM_SLURM=1 $(BIN)/pytest tests/workflow/test_slurm.py
+	OCTSIM_SLURM=1 $(BIN)/pytest tests/workflow/test_slurm.py tests/workflow/test_scheduler.py
 
 bench-slurm: .venv/dev .venv/slurm
 	$(BIN)/python benchmarks/slurm.py
+
+bench-scheduler: .venv/run .venv/slurm
+	PYTHONPATH=benchmarks $(BIN)/python -P benchmarks/scheduler_load.py --write
 
 COMPILE = $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate

@@ -90,3 +90,10 @@ GRID: dict[str, Any] = merged(
         "grid": {"scene.gap": ["5 nm", "20 nm"], "processing.window": ["hann", "hamming"]},
     },
 )
+
+
+def scattered(count: int) -> dict[str, Any]:
+    """Give a config whose sweep is scattered over so many jobs, one for each combination."""
+    gaps = {"start": "5 nm", "stop": "50 nm", "num": count}
+    few = {"sweep": {"diameters": {"num": 2}}, "scatter": {"minutes": 1e-6}}
+    return merged(TINY, GIVEN, few, {"run": "scattered", "grid": {"scene.gap": gaps}})
