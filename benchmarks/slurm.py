@@ -29,7 +29,7 @@ def run(checkout: Checkout) -> dict[str, dict[str, float]]:
     (checkout.folder / "mine.yaml").write_text(yaml.safe_dump(TINY), encoding="utf-8")
     command = [
         sys.executable, "-m", "snakemake", "--configfile", "mine.yaml", "--cores", "2",
-        "--workflow-profile", "profiles/slurm", "--slurm-keep-successful-logs",
+        "--workflow-profile", "profiles/slurm", "--slurm-keep-successful-logs", "--verbose",
         "--slurm-init-seconds-before-status-checks", str(WAIT),
     ]  # fmt: skip
     submitted: dict[str, tuple[float, Path]] = {}
