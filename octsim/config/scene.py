@@ -26,7 +26,9 @@ class RefractiveIndex(Section):
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[Medium, MediumIndex]
 
-    glass: MediumIndex = _key(1.52, "slide and immersion oil")
+    glass: MediumIndex = _key(
+        1.52, "slide, and immersion oil where objective.immersion is not given"
+    )
     water: MediumIndex = _key(1.33, "around the neuron")
     neuron: MediumIndex = _key(
         1.39,

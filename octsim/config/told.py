@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 
 from octsim.config.grid import combinations
+from octsim.config.immersion import of_slide
 from octsim.config.models import Config, SceneConfig
 from octsim.config.scene import CylinderConfig, Layer
 from octsim.optics.shipped_materials import SHIPPED
@@ -38,6 +39,8 @@ def _conventions(config: Config) -> Iterator[str]:
     for medium in dict.fromkeys(used):
         if isinstance(name := given[medium], str):
             yield f"scene.refractive_index.{medium}: {name} is by {SHIPPED[name].origin}"
+    if slide := of_slide(config):
+        yield f"objective.immersion: the slide aberrates by {1e3 * slide.rms:.3g} nm rms, once"
 
 
 def _scene(config: Config) -> str:

@@ -55,8 +55,9 @@ def test_its_index_and_the_slides_thickness_are_numbers_that_tolerances_may_name
 
 
 def test_it_is_said_in_words() -> None:
-    (line,) = (one for one in told(load_config(oil())) if one.startswith("scene:"))
-    assert "oil (n 1.515) below glass (n 1.52) of 170 um" in line
+    scene, aberration = told(load_config(oil()))
+    assert "oil (n 1.515) below glass (n 1.52) of 170 um" in scene
+    assert aberration == "objective.immersion: the slide aberrates by 18.9 nm rms, once"
 
 
 REFUSED: list[tuple[dict[str, Any], str]] = [
