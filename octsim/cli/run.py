@@ -89,11 +89,15 @@ def run(given: argparse.Namespace) -> int:
     configs = configs or [str(workflow_folder() / "config" / "default.yaml")]
     with TemporaryDirectory(prefix="octsim-looked-") as looked:
         os.environ[FOLDER] = looked  # by the processes of the run it is not looked at again
-        config, _ = load_and_tell(*configs)
-        shown = "quiet" if given.quiet else "verbose" if given.verbose else ""
-        if not (shown or given.flags) and sys.stderr.isatty():
-            print("octsim: starting snakemake …", end="", file=sys.stderr, flush=True)
-        return _Running(_command(configs, targets, config.run, given), given.flags, shown).ended()
+        try:
+            config, _ = load_and_tell(*configs)
+            shown = "quiet" if given.quiet else "verbose" if given.verbose else ""
+            if not (shown or given.flags) and sys.stderr.isatty():
+                print("octsim: starting snakemake …", end="", file=sys.stderr, flush=True)
+            command = _command(configs, targets, config.run, given)
+            return _Running(command, given.flags, shown).ended()
+        finally:
+            del os.environ[FOLDER]
 
 
 def _told_apart(words: Sequence[str]) -> tuple[list[str], list[str]]:

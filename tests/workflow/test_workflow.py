@@ -412,8 +412,9 @@ def test_an_edit_of_the_grid_reruns_only_what_has_the_key(grid: Checkout) -> Non
 
 
 def test_what_is_found_of_a_grid_lies_where_every_node_sees_it_until_its_run_ends(
-    tmp_path: Path,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.delenv("OCTSIM_LOOKED", raising=False)
     checkout = Checkout(tmp_path)
     script = tmp_path / "workflow" / "scripts" / "job.py"
     script.write_text(
