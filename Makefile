@@ -28,7 +28,7 @@ PEERS_PIP = .venv-peers/$(1)/bin/python -m pip --disable-pip-version-check --qui
 PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 # what a user's environment tells other programs of Python's (octsim/base/surroundings.py)
-unexport $(filter-out PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX PYTHONUNBUFFERED,$(filter PYTHON%,$(.VARIABLES)))
+unexport $(filter-out PYTHONS PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX PYTHONUNBUFFERED,$(filter PYTHON%,$(.VARIABLES)))
 
 # names of files as they are given, whatever make and the shell would read into them
 export GIVEN_CONFIG := $(value CONFIG)
