@@ -13,7 +13,7 @@ from typing import Any
 import netCDF4
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from octsim.base.errors import DatasetError, UncheckedWarning
 from octsim.base.failures import said_in_a_line
@@ -263,3 +263,16 @@ def flags(codes: type[IntEnum], values: NDArray[np.integer[Any]]) -> Flags:
         "flag_values": np.array([m.value for m in members], np.int8),
         "flag_meanings": " ".join(m.name.lower() for m in members),
     }
+
+
+def flags_of_missing(values: ArrayLike, reason: IntEnum) -> Flags:
+    """Return the status of values that are missing, NaN, for one reason; 0 where they are there.
+
+    Parameters
+    ----------
+    values : array_like
+        Of the status's shape.
+    reason : IntEnum
+        Its code where a value is missing.
+    """
+    return flags(type(reason), np.where(np.isnan(values), reason, 0))

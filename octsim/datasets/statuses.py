@@ -16,11 +16,6 @@ class MeanStatus(IntEnum):
     """Fewer of the values are known than it takes; their own statuses say why."""
 
 
-def mean_status(mean: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return the `MeanStatus` of means that are NaN where too few values are known."""
-    return np.where(np.isnan(mean), MeanStatus.TOO_FEW, MeanStatus.KNOWN)
-
-
 TOLD_BY: Mapping[str, Mapping[str, str]] = {
     # stage: {status: variables whose NaN it explains}
     "focus_scan": {"accuracy_status": "intensity intensity_error"},

@@ -68,18 +68,12 @@ def slide_aberration(
     added, refocused = varying(thickness * (within - np.sqrt(immersion**2 - s2))), varying(within)
     way = float(weight @ (added * refocused)) / float(weight @ refocused**2)
     left = added - way * refocused
+    legendre = np.polynomial.legendre.legvander(x, max(_DEGREES) // 2)
     terms = tuple(
         # Z(n, 0) is √(n + 1) times Legendre's polynomial of half its degree, in 2 ρ² - 1
-        (n * (n + 1) // 2 + 1, float(sqrt(n + 1) * (weight * left) @ _legendre(n // 2, x)))
+        (n * (n + 1) // 2 + 1, float(sqrt(n + 1) * (weight * left) @ legendre[:, n // 2]))
         for n in _DEGREES
     )
     whole = float(weight @ left**2)
     remainder = max(0.0, whole - sum(rms**2 for _, rms in terms))
     return SlideAberration(terms, sqrt(whole), sqrt(remainder), -way)
-
-
-def _legendre(degree: int, x: NDArray[np.float64]) -> NDArray[np.float64]:
-    import numpy as np
-
-    values: NDArray[np.float64] = np.polynomial.legendre.Legendre.basis(degree)(x)
-    return values

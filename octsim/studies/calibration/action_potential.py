@@ -9,7 +9,7 @@ import xarray as xr
 from octsim.config.derive import calibrating
 from octsim.config.given import taking_config
 from octsim.config.models import Config
-from octsim.datasets.files import flags, make
+from octsim.datasets.files import flags_of_missing, make
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 from octsim.optics.two_beams import predicted_phase_slope
@@ -19,7 +19,7 @@ from octsim.phase.measured_series import Series, change_from_rest
 from octsim.phase.noise import shot_noise
 from octsim.stages.focus_law import focus_line
 from octsim.studies.calibration.expansion import expansion
-from octsim.studies.calibration.missing import SystematicStatus, systematic_status
+from octsim.studies.calibration.missing import SystematicStatus
 from octsim.studies.calibration.round_trips import Trips, round_trips, trip_diameters
 from octsim.studies.calibration.scheme import converged
 from octsim.studies.calibration.study import by_fft
@@ -125,7 +125,7 @@ def action_potential(
             "systematic_error": ("time", found.systematic_error),
             "systematic_status": (
                 "time",
-                *flags(SystematicStatus, systematic_status(found.systematic_error)),
+                *flags_of_missing(found.systematic_error, SystematicStatus.NOT_KNOWN),
             ),
             "fft_expansion": ("time", 1e3 * fft_change.phase / predicted),
             "diameter": settings.diameter,
@@ -147,7 +147,7 @@ def _trips(config: Config, trips: Mapping[str, Trips]) -> dict[str, Any]:
         "trip_systematic_error": (dimensions, both.systematic_error),
         "trip_systematic_status": (
             dimensions,
-            *flags(SystematicStatus, systematic_status(both.systematic_error)),
+            *flags_of_missing(both.systematic_error, SystematicStatus.NOT_KNOWN),
         ),
         "trip_bias": ("trip_diameter", (both.recovered - truth).mean(axis=1) / truth),
         **{

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from octsim.base.errors import ConfigError, DatasetError, OctsimError, OctsimWarning
 from octsim.config.calibration import DIAMETER
 from octsim.config.models import Config
-from octsim.datasets.files import flags, make
+from octsim.datasets.files import flags, flags_of_missing, make
 from octsim.measured.phases import series_of
 from octsim.phase.measured_bands import read_series_of_bands
 from octsim.phase.measured_series import Series, read_series
@@ -18,7 +18,7 @@ from octsim.phase.rest_error import ErrorStatus, smallest_step, stated_change
 from octsim.studies.calibration.expansion_doubts import doubts as doubts
 from octsim.studies.calibration.expansion_doubts import named_samples, outliers_in
 from octsim.studies.calibration.expansion_fit import series_fit
-from octsim.studies.calibration.missing import SystematicStatus, series_statuses, systematic_status
+from octsim.studies.calibration.missing import SystematicStatus, series_statuses
 from octsim.studies.calibration.sensitivity import Expansion, matched, sensitivity_at, solved
 
 
@@ -225,7 +225,7 @@ def series_expansion(
     )
     step = smallest_step(series.phase)
     statuses = series_statuses(("time",), series.phase, dropped, change.scatter, step)
-    unsure = flags(SystematicStatus, systematic_status(at.standard_error))
+    unsure = flags_of_missing(at.standard_error, SystematicStatus.NOT_KNOWN)
     made = make(
         "expansion",
         config,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from octsim.base.errors import DatasetError, OctsimWarning
 from octsim.config.calibration import DIAMETER
 from octsim.config.models import Config
-from octsim.datasets.files import flags, make
+from octsim.datasets.files import flags, flags_of_missing, make
 from octsim.phase.derivatives import Array
 from octsim.phase.measured_series import Series
 from octsim.phase.outliers import Standing, outliers
@@ -22,7 +22,6 @@ from octsim.studies.calibration.missing import (
     SystematicStatus,
     misfit_status,
     series_statuses,
-    systematic_status,
 )
 from octsim.studies.responses.quantities import CONFIGURED
 from octsim.studies.responses.separability import Separability, errors_of, told_apart
@@ -188,7 +187,7 @@ def series_fit(config: Config, series: Sequence[Series], responses: xr.Dataset) 
     steps = np.array([smallest_step(one.phase) for one in series])
     scatter = np.array([one.scatter for one, _ in stated])
     statuses = series_statuses(("time", "band"), whole, dropped.T, scatter, steps)
-    unsure = systematic_status(matrix.shift.sum())
+    unsure = flags_of_missing(matrix.shift.sum(), SystematicStatus.NOT_KNOWN)
     misfit = misfit_status(found.chi_square, found.change)
     given = [one.phase_error for one in series if one.phase_error is not None]
     if given:
@@ -227,7 +226,7 @@ def series_fit(config: Config, series: Sequence[Series], responses: xr.Dataset) 
             "smallest_step": ("band", steps),
             "drift": ("band", np.array([one.drift for one, _ in stated])),
             **statuses,
-            "systematic_status": ((), *flags(SystematicStatus, unsure)),
+            "systematic_status": ((), *unsure),
             "chi_square_status": ("time", *flags(MisfitStatus, misfit)),
             **measured,
             **marked,

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from octsim.datasets.files import flags
+from octsim.datasets.files import flags, flags_of_missing
 from octsim.phase.derivatives import Array
 
 
@@ -74,18 +74,13 @@ def series_statuses(
     samples = np.select(
         [np.isnan(phase), dropped], [SampleStatus.MISSING, SampleStatus.LEFT_OUT], SampleStatus.USED
     )
-    given = np.where(np.isnan(scatter), ScatterStatus.NOT_NEEDED, ScatterStatus.KNOWN)
-    unseen = np.where(np.isnan(step), StepStatus.NOT_SEEN, StepStatus.KNOWN)
     return {
         "sample_status": (over, *flags(SampleStatus, samples)),
-        "rest_scatter_status": (over[1:], *flags(ScatterStatus, given)),
-        "smallest_step_status": (over[1:], *flags(StepStatus, unseen)),
-    }
-
-
-def systematic_status(error: ArrayLike) -> NDArray[np.int64]:
-    """Return the `SystematicStatus` of errors by a slope or by responses, NaN if not known."""
-    return np.where(np.isnan(error), SystematicStatus.NOT_KNOWN, SystematicStatus.KNOWN)
+        "rest_scatter_status": (
+            over[1:], *flags_of_missing(scatter, ScatterStatus.NOT_NEEDED),
+        ),
+        "smallest_step_status": (over[1:], *flags_of_missing(step, StepStatus.NOT_SEEN)),
+    }  # fmt: skip
 
 
 def misfit_status(misfit: Array, change: Array) -> NDArray[np.int64]:

@@ -16,7 +16,7 @@ from octsim.config.maxwell import beyond_maxwell
 from octsim.config.models import Config
 from octsim.config.processing import Processing
 from octsim.config.scene_keys import variable_name
-from octsim.datasets.files import flags, make
+from octsim.datasets.files import flags, flags_of_missing, make
 from octsim.instrument.points import Points
 from octsim.optics.two_beams import predicted_phase_slope
 from octsim.phase.derivatives import Array
@@ -205,22 +205,21 @@ def _statuses(
     """Return why errors, and slopes by other schemes and of each side's light, are missing."""
     why = np.where(late, SlopeErrorStatus.NOT_REACHED, SlopeErrorStatus.NOT_COMPARED)
     of_error = np.where(np.isnan(error), why, SlopeErrorStatus.KNOWN)
-    of_budget = np.where(np.isnan(budget), SlopeErrorStatus.NOT_COMPARED, SlopeErrorStatus.KNOWN)
+    of_budget = flags_of_missing(budget, SlopeErrorStatus.NOT_COMPARED)
     waves = OtherSchemeStatus.BEYOND_SCHEME if beyond else OtherSchemeStatus.NOT_REACHED
     others = {
         "maxwell": waves, "rays": OtherSchemeStatus.NOT_REACHED,
         "light_paths": OtherSchemeStatus.NOT_REACHED,
         "near_side": OtherSchemeStatus.NO_LIGHT, "far_side": OtherSchemeStatus.NO_LIGHT,
     }  # fmt: skip
-    of_others = {
-        name: np.where(np.isnan(column[f"{name}_phase_slope"]), code, OtherSchemeStatus.KNOWN)
-        for name, code in others.items()
-    }
     return {
         "standard_error_status": ("diameter", *flags(SlopeErrorStatus, of_error)),
-        "budget_status": (("diameter", "parameter"), *flags(SlopeErrorStatus, of_budget)),
+        "budget_status": (("diameter", "parameter"), *of_budget),
         **{
-            f"{name}_slope_status": ("diameter", *flags(OtherSchemeStatus, codes))
-            for name, codes in of_others.items()
+            f"{name}_slope_status": (
+                "diameter",
+                *flags_of_missing(column[f"{name}_phase_slope"], code),
+            )
+            for name, code in others.items()
         },
     }

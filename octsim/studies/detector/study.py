@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from octsim.base.threads import each
 from octsim.config.maxwell import beyond_maxwell, by_maxwell
 from octsim.config.models import Config
-from octsim.datasets.files import flags, make
+from octsim.datasets.files import flags, flags_of_missing, make
 from octsim.instrument.points import Points
 from octsim.optics.two_beams import predicted_phase_slope
 from octsim.phase.fringe_status import FringeStatus
@@ -186,12 +186,11 @@ def _of_slopes(found: Sequence[Seen], diameter: Array, predicted: float) -> dict
     rays = _over(told(_last([one.phase for one in found])))
     exact = told(np.array([one.exact_phase for one in found]))
     jumps = _over(_last([one.edge_step for one in found]))
-    jump = np.where(np.isnan(jumps), JumpStatus.NO_FRINGE, JumpStatus.KNOWN)
     over = (*_DETECTORS, "diameter")
     return {
         "ray_slope_status": (("ray_scheme", *over), *flags(SlopeStatus, rays)),
         "maxwell_slope_status": ("diameter", *flags(SlopeStatus, exact)),
-        "edge_jump_status": (over, *flags(JumpStatus, jump)),
+        "edge_jump_status": (over, *flags_of_missing(jumps, JumpStatus.NO_FRINGE)),
     }
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from octsim.base.threads import each
 from octsim.config.models import Config
 from octsim.config.processing import Processing
-from octsim.datasets.files import flags
+from octsim.datasets.files import flags_of_missing
 from octsim.instrument.points import Points
 from octsim.phase.estimators.estimate import Array
 from octsim.studies.estimators.contenders import Band, EstimateStatus
@@ -101,13 +101,12 @@ def _arranged(
         [[one.of_each[estimator] for one in resolutions] for estimator in compared]
     ).reshape(-1, *shape)
     dimensions = ("estimator", "noise_diameter", "snr")
-    missing = np.isnan(of_each)
-    status = np.where(missing, EstimateStatus.NO_ESTIMATE, EstimateStatus.KNOWN)
+    status = flags_of_missing(of_each, EstimateStatus.NO_ESTIMATE)
     return {
         # over the diameters, as noise of each has as much to say
         f"{prefix}resolution": (("estimator", "snr"), np.sqrt(np.mean(of_each**2, axis=1))),
         f"{prefix}bound": ("snr", np.sqrt(np.mean(bound**2, axis=0))),
         f"{prefix}photons": ("snr", photons.mean(axis=0)),
         f"{prefix}resolution_over_bound": (dimensions, of_each / bound),
-        f"{prefix}resolution_status": (dimensions, *flags(EstimateStatus, status)),
+        f"{prefix}resolution_status": (dimensions, *status),
     }

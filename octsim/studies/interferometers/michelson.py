@@ -1,6 +1,7 @@
 """A Michelson interferometer: a reference arm beside a mirror in the focus (thesis §2.1)."""
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,11 @@ ARM = 9.0
 """Length of the reference arm whose spectrum is shown, one way, µm."""
 REACH, STEPS = 3.0, 601
 """Lengths that the mirror is moved through, to both sides of the focus, µm, and how many."""
+
+ALONE: Mapping[str, Any] = {
+    "interferometer": {"reference": None}, "objective": {"immersion": None},
+}  # fmt: skip
+"""Overlay that leaves nothing beside a scene that a closed form is of."""
 
 
 class Michelson(NamedTuple):
@@ -38,10 +44,7 @@ def michelson(config: Config) -> Michelson:
     swept = {"medium": water, "thickness": "swept"}
     scene = {"layers": [glass, swept, water], "cylinders": []}
     # the pupil is even and the focus on the plane: all rays return to it in phase
-    alone = changed(
-        counting_rays(config),
-        {"scene": scene, "interferometer": {"reference": None}, "objective": {"immersion": None}},
-    )
+    alone = changed(counting_rays(config), ALONE, {"scene": scene})
     instrument = Instrument(alone)
     k = instrument.wavenumber
     amplitude = float(np.sqrt(instrument.spectrum(1.0, 0.0).intensity.mean()))

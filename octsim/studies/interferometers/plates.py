@@ -12,6 +12,7 @@ from octsim.config.derive import by_waves, changed, counting_rays
 from octsim.config.models import Config
 from octsim.instrument.instrument import Instrument
 from octsim.optics.two_beams import ideal_spectra
+from octsim.studies.interferometers.michelson import ALONE
 
 Array = NDArray[np.float64]
 IDEAL = "cos(2ndk)"
@@ -20,9 +21,6 @@ ALONG_THE_AXIS = 1e-3
 FAR = "300 mm"
 """Focus distance: from afar the objective's rim cuts nothing of what returns from beside it."""
 APERTURES = (0.3, 0.6, 0.9, 1.2)
-_ALONE: dict[str, Any] = {
-    "interferometer": {"reference": None}, "objective": {"immersion": None},
-}  # fmt: skip
 FILM = 0.7
 """Thickness of the film of water below the plate that is swept, µm."""
 
@@ -70,7 +68,7 @@ def plates(config: Config, thickness: Array, threads: int) -> Iterator[Plates]:
     glass, water, neuron = _media(config)
     for name, between in (("two", (neuron,)), ("three", (water, neuron))):
         scene = _scene((glass, *between, glass), neuron)
-        one = changed(counting_rays(config), _ALONE, {"scene": scene, "objective": parallel})
+        one = changed(counting_rays(config), ALONE, {"scene": scene, "objective": parallel})
         spectra = Instrument(one).spectra(thickness, np.zeros(thickness.size), threads)
         of = {glass: config.objective_index, water: config.host_index, neuron: config.swept_index}
         indices = [of[medium] for medium in (glass, *between, glass)]
@@ -82,7 +80,7 @@ def plates(config: Config, thickness: Array, threads: int) -> Iterator[Plates]:
     for aperture in APERTURES:
         cone = {"numerical_aperture": aperture, "pupil": "uniform"}
         scene = _scene((glass, neuron, glass), neuron)
-        one = changed(by_waves(config), _ALONE, {"scene": scene, "objective": cone})
+        one = changed(by_waves(config), ALONE, {"scene": scene, "objective": cone})
         spectra = Instrument(one).spectra(thickness, foci, threads)
         yield Plates(f"two planes, Maxwell, NA {aperture:g}", one, spectra, None)
 

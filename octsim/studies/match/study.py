@@ -12,10 +12,10 @@ from octsim.config.derive import with_flat_source
 from octsim.config.maxwell import beyond_maxwell
 from octsim.config.models import Config
 from octsim.config.source import source_of
-from octsim.datasets.files import flags, make
+from octsim.datasets.files import flags, flags_of_missing, make
 from octsim.phase.fringe_status import WITH_PHASE, FringeStatus
 from octsim.stages.focus_law import focus_line
-from octsim.studies.calibration.missing import SystematicStatus, systematic_status
+from octsim.studies.calibration.missing import SystematicStatus
 from octsim.studies.calibration.parameters import parameter_named
 from octsim.studies.calibration.scheme import waves_of
 from octsim.studies.calibration.sensitivity import MISFIT, sensitivity_at
@@ -180,15 +180,11 @@ def _slope(
     return {
         "fixed_focus_phase_slope": at.slope,
         "fixed_focus_phase_slope_standard_error": at.standard_error,
-        "systematic_status": _status(at.standard_error),
+        "systematic_status": ((), *flags_of_missing(at.standard_error, SystematicStatus.NOT_KNOWN)),
         "matched_phase_slope": at.slope + float(rates @ both @ fitted @ found.change),
         "matched_phase_slope_standard_error": error,
-        "matched_systematic_status": _status(error),
+        "matched_systematic_status": ((), *flags_of_missing(error, SystematicStatus.NOT_KNOWN)),
     }
-
-
-def _status(error: float) -> tuple[Any, ...]:
-    return (), *flags(SystematicStatus, systematic_status(error))
 
 
 def _budget(budget: xr.DataArray, name: str, diameter: float, known: Array) -> float:

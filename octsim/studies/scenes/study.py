@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from octsim.base.threads import each
 from octsim.config.models import Config
-from octsim.datasets.files import flags, make
-from octsim.datasets.statuses import MeanStatus, mean_status
+from octsim.datasets.files import flags, flags_of_missing, make
+from octsim.datasets.statuses import MeanStatus
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 from octsim.phase.derivatives import wrapped
@@ -135,7 +135,7 @@ def _variables(
         "tolerated": (("case", "scheme"), tolerated(every, slope)),
         "case_status": (("case", "scheme"), *flags(CaseStatus, measured)),
         "change_status": (("case", "scheme", "diameter"), *flags(ChangeStatus, changed)),
-        "mean_change_status": (kinds, *flags(MeanStatus, mean_status(mean))),
+        "mean_change_status": (kinds, *flags_of_missing(mean, MeanStatus.TOO_FEW)),
         "tolerated_status": (
             ("case", "scheme"),
             *flags(ToleratedStatus, tolerated_status(every, slope)),

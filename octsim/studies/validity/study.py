@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from octsim.base.threads import each
 from octsim.config.models import Config, FocusLine
-from octsim.datasets.files import flags, make
-from octsim.datasets.statuses import MeanStatus, mean_status
+from octsim.datasets.files import flags, flags_of_missing, make
+from octsim.datasets.statuses import MeanStatus
 from octsim.instrument.instrument import Instrument
 from octsim.instrument.points import Points
 from octsim.phase.fringe_status import FringeStatus
@@ -165,7 +165,7 @@ def _variables(rows: Sequence[Sequence[Compared]]) -> dict[str, Any]:
     mean, sure = mean_error(variables["ray_phase_slope"][1], variables["exact_phase_slope"][1])
     variables["mean_slope_error"] = kinds, mean
     variables["mean_slope_error_standard_error"] = kinds, sure
-    variables["mean_slope_error_status"] = kinds, *flags(MeanStatus, mean_status(mean))
+    variables["mean_slope_error_status"] = kinds, *flags_of_missing(mean, MeanStatus.TOO_FEW)
     within = np.abs(error)[..., np.newaxis] <= np.array(BOUNDS)
     variables["share_within"] = (*kinds, "bound_of_error"), within.mean(axis=-2)
     return variables
