@@ -10,6 +10,7 @@ from octsim.base.errors import OctsimError
 
 if TYPE_CHECKING:
     from octsim.config.models import Config
+    from octsim.stages.cost_estimate import RunEstimate
 
 
 def add(commands: Any) -> None:
@@ -32,35 +33,36 @@ def run_check(given: Namespace) -> int:
     """Check a config and print what it comes to; what is likely not meant goes to stderr."""
     from octsim.config.load import load_and_tell
     from octsim.config.resolved_text import resolved_lines
+    from octsim.stages.cost_estimate import expected
 
     config, said = load_and_tell(*(path.expanduser() for path in given.config))
+    estimate = expected(config)
     if not given.quiet:
-        print(*resolved_lines(config), *(f"# {line}" for line in _to_come(config)), sep="\n")
+        lines = (f"# {line}" for line in _to_come(config, estimate))
+        print(*resolved_lines(config), *lines, sep="\n")
     sys.stdout.flush()  # before the warnings, where both go to one screen
-    for remark in (*said, *_refused(config)):
+    for remark in (*said, *_refused(config, estimate)):
         print(f"octsim: warning: {remark}", file=sys.stderr)
     return 0
 
 
-def _to_come(config: "Config") -> Iterator[str]:
+def _to_come(config: "Config", estimate: "RunEstimate") -> Iterator[str]:
     """Say what a run of a config is of and what it takes, a line each."""
     from octsim.config.told import told
-    from octsim.stages.cost_estimate import expected
     from octsim.stages.workload import shares_of
 
     yield from told(config)
-    yield f"results/{config.run}: {expected(config)}"
+    yield f"results/{config.run}: {estimate}"
     scattered = {stage: count for stage, count in shares_of(config).items() if count > 1}
     if scattered:
         jobs = ", ".join(f"{stage} {count}" for stage, count in scattered.items())
         yield f"jobs that share a stage (scatter.minutes): {jobs}"
 
 
-def _refused(config: "Config") -> list[str]:
+def _refused(config: "Config", estimate: "RunEstimate") -> list[str]:
     """Return why a run of a config would not begin, a line each."""
-    from octsim.stages.cost_estimate import check_budget, expected
+    from octsim.stages.cost_estimate import check_budget
 
-    estimate = expected(config)
     try:
         check_budget(config, estimate.of(*estimate.stages), Path(f"results/{config.run}"))
     except OctsimError as error:

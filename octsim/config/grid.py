@@ -93,6 +93,9 @@ def combinations(config: Config, *keys: str) -> Iterator[Combination]:
     >>> [one.config.scene.gap for one in octsim.combinations(config)]
     [0.005, 0.02]
     """
+    if not config.grid.varied:
+        yield Combination((), {}, config)
+        return
     along = axes(config, *keys)
     configs = ConfigsAt({**config.to_dict(), "grid": {}})
     for position in itertools.product(*(range(len(axis.rows)) for axis in along)):

@@ -1,11 +1,13 @@
 """Which keys of a config a dataset follows from: nothing else makes it anew."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
 
+from octsim.base.remembered import remembered
 from octsim.config.derive import by_light_paths, overlap, parts_of
 from octsim.config.following import FOLLOWING, follows
-from octsim.config.grid import Axis, axes, combinations
-from octsim.config.models import Config
+from octsim.config.grid import Axis, axes, combinations, row_text
+from octsim.config.models import Config, Grid
 from octsim.config.scheme import light_keys, scheme_of
 from octsim.datasets.catalog import CATALOG, STAGES, jobs
 from octsim.datasets.stage import LIGHT, RAYS, SUMMING, Stage
@@ -20,14 +22,33 @@ _DECIDING = (
 
 def keys_read(stage: str, config: Config) -> tuple[str, ...]:
     """Return the keys that a stage reads itself, at any combination, besides others' datasets."""
-    plain = (at.config for at in combinations(config, *_DECIDING))
-    return tuple(dict.fromkeys(key for one in plain for key in _read(stage, one)))
+    return tuple(dict.fromkeys(key for one in _kinds(config) for key in _read(stage, one)))
 
 
 def keys_behind(stage: str, config: Config) -> tuple[str, ...]:
     """Return the keys that a stage's dataset depends on: its own and those of stages before it."""
-    plain = (at.config for at in combinations(config, *_DECIDING))
-    return tuple(dict.fromkeys(key for one in plain for key in _behind(stage, one)))
+    return tuple(dict.fromkeys(key for one in _kinds(config) for key in _behind(stage, one)))
+
+
+@remembered
+def _kinds(config: Config) -> tuple[Config, ...]:
+    """Return one plain config of each kind of combinations that may read different keys."""
+    kept: dict[str, list[Any]] = {}
+    for axis in axes(config, *_DECIDING):
+        rows: dict[str, tuple[Any, ...]] = {}
+        for row in axis.rows:
+            rows.setdefault(row_text(tuple(map(_kind, axis.keys, row))), row)
+        kept |= zip(axis.keys, map(list, zip(*rows.values(), strict=True)), strict=True)
+    grid = Grid.model_validate({"combine": config.grid.combine, **kept})
+    reduced = config.model_copy(update={"grid": grid})
+    return tuple(at.config for at in combinations(reduced))
+
+
+def _kind(key: str, value: Any) -> Any:
+    """Return what of a value decides which other keys are read."""
+    if overlap(key, "scene.refractive_index") and isinstance(value, int | float):
+        return "a number"
+    return value
 
 
 def _read(stage: str, config: Config) -> Iterator[str]:
@@ -64,6 +85,15 @@ def stage_axes(stage: str, config: Config) -> tuple[Axis, ...]:
     A stage that has nothing to do with any varied key has none.
     """
     return axes(config, *keys_behind(stage, config))
+
+
+def with_the_same_axes(stages: Iterable[str], config: Config) -> list[list[str]]:
+    """Return stages together whose datasets have the same axes of the grid, as most have."""
+    together: dict[tuple[str, ...], list[str]] = {}
+    for stage in stages:
+        varied = (key for axis in stage_axes(stage, config) for key in axis.keys)
+        together.setdefault(tuple(varied), []).append(stage)
+    return list(together.values())
 
 
 def needs_law(config: Config) -> bool:

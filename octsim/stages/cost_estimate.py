@@ -10,14 +10,15 @@ from typing import NamedTuple
 
 from octsim.base.errors import ConfigError
 from octsim.base.files import standing
+from octsim.base.remembered import remembered
 from octsim.config.alike import alike
 from octsim.config.derive import by_light_paths, counting_rays
-from octsim.config.grid import axes, combinations
+from octsim.config.grid import axes
 from octsim.config.models import Config
 from octsim.config.scheme import point_cost, rate_name, scheme_of
 from octsim.config.tree import paths_by_digits
 from octsim.datasets.catalog import CATALOG
-from octsim.datasets.keys import stage_axes, stages_of
+from octsim.datasets.keys import keys_behind, stages_of, with_the_same_axes
 from octsim.datasets.stage import RAYS, SUMMING, Stage
 from octsim.instrument.point_store import open_store
 from octsim.schemes.cost import PointCost
@@ -29,7 +30,6 @@ _PATH_BYTES = 40  # of what is kept of each path of a point
 _JOB_BYTES = 3e8  # of a process with its libraries, compiled code and blocks
 _SAMPLE_MEMORY = 1000.0  # bytes, of each sample of the spectra in a block
 _ENOUGH = 50  # points, to know what one takes
-_NO_KEY = ("run",)  # which no grid varies
 _SHORT = 60.0  # s; of what takes less nothing needs to be said
 
 
@@ -111,6 +111,7 @@ def estimate(config: Config, measured: Callable[[str, PointCost], PointCost]) ->
         scheme's own, which it is given too.
     """
 
+    @remembered
     def rate(of: Config) -> PointCost:
         return measured(rate_name(of), point_cost(of))
 
@@ -138,23 +139,17 @@ def estimate(config: Config, measured: Callable[[str, PointCost], PointCost]) ->
             )
         return Cost(0, seconds * values, size * values, _JOB_BYTES + memory, memory)
 
-    @functools.cache
-    def kinds(varied: tuple[str, ...]) -> list[tuple[Config, int]]:
-        return list(alike(config, *varied))
-
-    def over(row: Stage) -> Cost:
-        # most stages have the same axes, which are gone through once
-        varied = tuple(key for axis in stage_axes(row.name, config) for key in axis.keys)
-        every = kinds(varied) if varied else kinds(_NO_KEY)
-        costs = (cost_of(row, one).times(count) for one, count in every)
-        return functools.reduce(Cost.and_also, costs, Cost())
-
     there = stages_of(config)
-    stages = {
-        row.name: over(row)
-        for row in CATALOG.values()
+    made = [
+        row for row in CATALOG.values()
         if row.name in there and (row.traces or any(row.per_sample))
-    }
+    ]  # fmt: skip
+    stages = {row.name: Cost() for row in made}
+    for names in with_the_same_axes(stages, config):
+        for one, count in alike(config, *keys_behind(names[0], config)):
+            for name in names:
+                cost = cost_of(CATALOG[name], one).times(count)
+                stages[name] = stages[name].and_also(cost)
     return RunEstimate(math.prod(len(axis.rows) for axis in axes(config)), stages)
 
 
@@ -223,12 +218,12 @@ def check_budget(config: Config, cost: Cost, folder: Path) -> None:
 
 def _uncounted(config: Config) -> Iterator[str]:
     """Say where the light paths of a combination's scene can't be numbered."""
-    for at in combinations(config, "scene", "tracing"):
+    for one, _ in alike(config, "scene", "tracing"):
         # of others the config has been checked, without a compiler
-        if not scheme_of(at.config).counts_rays or paths_by_digits(at.config.scene):
+        if not scheme_of(one).counts_rays or paths_by_digits(one.scene):
             continue
-        given = at.config.tracing.max_intersections
-        most = import_module("octsim.instrument.path_room").most_intersections(at.config)
+        given = one.tracing.max_intersections
+        most = import_module("octsim.instrument.path_room").most_intersections(one)
         if given > most:
             yield (
                 f"tracing.max_intersections: {given} given, but the light paths of so many "

@@ -3,11 +3,12 @@
 import math
 from typing import NamedTuple
 
+from octsim.base.remembered import remembered
 from octsim.config.alike import alike
 from octsim.config.models import Config
 from octsim.config.scheme import point_cost
 from octsim.datasets.catalog import CATALOG
-from octsim.datasets.keys import keys_behind, stages_of
+from octsim.datasets.keys import keys_behind, stages_of, with_the_same_axes
 
 SCATTERED = tuple(row.name for row in CATALOG.values() if row.traces)
 """Stages that trace, and so may take long."""
@@ -37,9 +38,12 @@ class Work(NamedTuple):
     """How many are in a block."""
 
 
+_cost = remembered(point_cost)
+
+
 def work_of(stage: str, config: Config) -> Work:
     """Return what a stage that traces has to do at a plain config."""
-    points, cost = CATALOG[stage].points, point_cost(config)
+    points, cost = CATALOG[stage].points, _cost(config)
     assert points is not None
     count, each = points(config)
     together = points_per_block(each * cost.size, each * cost.seconds)
@@ -53,13 +57,13 @@ def shares_of(config: Config) -> dict[str, int]:
     by rates that are the same everywhere: where a run is made does not change its jobs.
     """
     there = stages_of(config)
-    return {stage: _shares(stage, config) for stage in SCATTERED if stage in there}
-
-
-def _shares(stage: str, config: Config) -> int:
-    seconds, blocks = 0.0, 0
-    for one, count in alike(config, *keys_behind(stage, config)):
-        work = work_of(stage, one)
-        seconds += count * work.points * work.seconds
-        blocks += count * math.ceil(work.points / work.together)
-    return max(1, min(round(seconds / (60 * config.scatter.minutes)), blocks))
+    traced = [stage for stage in SCATTERED if stage in there]
+    seconds, blocks = dict.fromkeys(traced, 0.0), dict.fromkeys(traced, 0)
+    for stages in with_the_same_axes(traced, config):
+        for one, count in alike(config, *keys_behind(stages[0], config)):
+            for stage in stages:
+                work = work_of(stage, one)
+                seconds[stage] += count * work.points * work.seconds
+                blocks[stage] += count * math.ceil(work.points / work.together)
+    each = 60 * config.scatter.minutes
+    return {stage: max(1, min(round(seconds[stage] / each), blocks[stage])) for stage in traced}

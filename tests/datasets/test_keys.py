@@ -8,6 +8,8 @@ from gridded import gridded
 from octsim.config.derive import parts_of
 from octsim.config.load import load_config
 from octsim.config.models import Config
+from octsim.config.scheme import light_keys
+from octsim.datasets import keys
 from octsim.datasets.catalog import CATALOG
 from octsim.datasets.gallery import figures_of
 from octsim.datasets.keys import inputs_of, jobs_of, keys_read, stage_axes, stages_of
@@ -72,3 +74,28 @@ def test_an_expansion_is_by_a_calibration_or_where_more_is_fitted_by_responses()
     row = CATALOG["expansion"]
     assert inputs_of(row, Config()) == ("calibration",)
     assert inputs_of(row, more) == inputs_of(row, one) == ("responses",)
+
+
+@pytest.mark.parametrize("combine", ["product", "zip"])
+def test_of_many_indices_the_keys_are_found_once_and_one_that_disperses_counts(
+    combine: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[Config] = []
+
+    def counted(config: Config) -> tuple[str, ...]:
+        asked.append(config)
+        return light_keys(config)
+
+    monkeypatch.setattr(keys, "light_keys", counted)
+    index = "scene.refractive_index.neuron"
+
+    def behind(*indices: object) -> set[str]:
+        grid = {"combine": combine, index: [*indices]}
+        return set(keys.keys_behind("detections", load_config(GIVEN, {"grid": grid})))
+
+    plain, few = behind(1.36), len(asked)
+    asked.clear()
+    assert behind(*(1.36 + number / 1000 for number in range(20))) == plain
+    assert len(asked) == few
+    assert "spectrum" not in plain
+    assert "spectrum" in behind(1.36, {"cauchy": [1.35, 0.003]})
