@@ -9,11 +9,12 @@ Run by `make mutants`, which writes docs/mutants.md:
 import argparse
 import hashlib
 import json
-import math
 import signal
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatch
+from itertools import chain
+from math import isinf
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,9 @@ from mutants.trials import Ended, Trial, load, run
 ROOT = Path(__file__).parents[2]
 KEPT = ROOT / "results" / "mutants"
 ROOMS = {
-    "kernels": ("octsim/tracing/*.py", "octsim/optics/*.py", "octsim/schemes/**/*.py"),
+    "kernels": (
+        "octsim/tracing/*.py", "octsim/optics/*.py", "octsim/schemes/*.py", "octsim/schemes/*/*.py",
+    ),
     "readers": (
         "octsim/phase/measured_*.py", "octsim/measured/readers/*.py", "octsim/config/table_text.py",
     ),
@@ -39,7 +42,7 @@ _TURNS = 5 * ("kernels",) + 4 * ("readers",) + ("keys",)
 """Of ten changes that are drawn: there are a hundred times as many of kernels as of keys."""
 
 _CLEARLY = 3.0
-"""Times less than it may take: what a test takes without a change that is too slow with one."""
+"""Times as long as without a change a test may take with one, before it has noticed it."""
 
 
 def main() -> None:
@@ -49,9 +52,9 @@ def main() -> None:
     parser.add_argument("--seed", default="octsim", help="of the draw")
     parser.add_argument("--jobs", type=int, default=2, help="trials at once (2)")
     parser.add_argument(
-        "--seconds", type=float, default=60.0, help="of tests for each change, processor time (60)"
+        "--seconds", type=float, default=40.0, help="of tests for each change, processor time (40)"
     )
-    parser.add_argument("--longest", type=float, default=3.0, help="that one test may take, s (3)")
+    parser.add_argument("--longest", type=float, default=2.0, help="that one test may take, s (2)")
     parser.add_argument(
         "--again", action="store_true", help="not those that were noticed the last time"
     )
@@ -78,80 +81,46 @@ def _try(left: Sequence[Change], noticed: dict[str, str], asked: argparse.Namesp
     """Try changes, and note of each which test noticed it; empty if none did."""
     load()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped"))
+    tests = OwnTests(ROOT)
+    files = {change: tuple(tests.files(change.module)) for change in left}
+    known = _timed(dict.fromkeys(chain.from_iterable(files.values())), asked)
     tried: list[Change] = []
-    seen: dict[Change, Ended] = {}
-    tests, known = OwnTests(ROOT), Known(KEPT / "tests.json", _code(), asked.longest)
-
-    def say(change: Change, by: str) -> None:
-        noticed[change.name] = by
-        tried.append(change)
-        verdict = f"noticed by {by}" if by else "not noticed"
-        print(f"{len(tried)} of {len(left)}: {change.name}: {verdict}", flush=True)
-        _write(KEPT / "noticed.json", noticed)
 
     def trial(change: Change) -> Trial:
-        files = tests.files(change.module)
-        return Trial(change, True, tuple(files), without=known.left_out())
+        without = (
+            name for file in files[change] for name, took in known[file].items() if isinf(took)
+        )
+        return Trial(change, files[change], tuple(without), asked.seconds)
 
-    def ended(done: Trial, how: Ended) -> list[Trial]:
-        if done.made:
-            seen[done.change] = how
-        else:
-            known.learn(done.only, how.seconds)
-        return judged(done.change, seen[done.change])
+    def ended(done: Trial, how: Ended) -> None:
+        if not done.change:
+            return
+        slowed = f"{how.slow} (takes too long)" if how.slow else ""
+        by = noticed[done.change.name] = how.failed or slowed
+        tried.append(done.change)
+        verdict = f"noticed by {by}" if by else "not noticed"
+        print(f"{len(tried)} of {len(left)}: {done.change.name}: {verdict}", flush=True)
+        _write(KEPT / "noticed.json", noticed)
 
-    def judged(change: Change, how: Ended) -> list[Trial]:
-        doubtful = [name for name in (how.failed, *how.slow) if "::" in name]
-        if unknown := [name for name in doubtful if known.of(name) is None]:
-            files = dict.fromkeys(name.partition("::")[0] for name in unknown)
-            return [Trial(change, False, tuple(files), only=tuple(unknown))]
-        left_out = known.left_out()
-        slowed = [f"{name} (takes too long)" for name in how.slow if known.is_quick(name)]
-        if by := [name for name in (how.failed, *slowed) if name and name not in left_out]:
-            say(change, by[0])
-        elif set(doubtful) & set(left_out):
-            return [trial(change)]  # now without these
-        else:
-            say(change, "")
-        return []
-
-    times = asked.longest, asked.seconds
-    run(ROOT, [trial(change) for change in left], times, asked.jobs, ended)
+    run(ROOT, [trial(change) for change in left], _CLEARLY * asked.longest, asked.jobs, ended)
 
 
-class Known:
-    """How long tests take without a change, of those that it was asked of; kept in a file.
+def _timed(files: Iterable[str], asked: argparse.Namespace) -> dict[str, dict[str, float]]:
+    """Return how long the tests of files take without a change, s; infinite if they don't pass.
 
-    Parameters
-    ----------
-    file : Path
-        Where it is kept.
-    code : str
-        Digest of package and tests, of which it is known.
-    longest : float
-        Processor time that one test may take, s.
+    It is kept for the code that it is of.
     """
+    kept, key = KEPT / "tests.json", f"{_code()} {asked.longest}"
+    known: dict[str, dict[str, float]] = _read(kept).get(key, {})
+    unknown = [file for file in files if file not in known]
 
-    def __init__(self, file: Path, code: str, longest: float) -> None:
-        self._file, self._longest, self._key = file, longest, f"{code} {longest}"
-        self._seconds: dict[str, float] = _read(file).get(self._key, {})
+    def ended(done: Trial, how: Ended) -> None:
+        known[done.files[0]] = dict(how.seconds)
+        print(f"{len(known)} files of tests are timed: {done.files[0]}", flush=True)
+        _write(kept, {key: known})
 
-    def learn(self, asked: Sequence[str], seconds: Mapping[str, float]) -> None:
-        """Keep what tests took; those that nothing is told of did not pass."""
-        self._seconds |= {name: seconds.get(name, math.inf) for name in asked}
-        _write(self._file, {self._key: self._seconds})
-
-    def of(self, name: str) -> float | None:
-        """Return the processor time of a test, s; infinite if it does not pass."""
-        return self._seconds.get(name)
-
-    def is_quick(self, name: str) -> bool:
-        """Return whether a test is far from being left for its time."""
-        return self._seconds.get(name, math.inf) < self._longest / _CLEARLY
-
-    def left_out(self) -> tuple[str, ...]:
-        """Return the tests that don't pass, or not in time, without a change."""
-        return tuple(name for name, took in self._seconds.items() if took == math.inf)
+    run(ROOT, [Trial(None, (file,)) for file in unknown], asked.longest, asked.jobs, ended)
+    return known
 
 
 def sample(root: Path, seed: str, number: int) -> list[Change]:

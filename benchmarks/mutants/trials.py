@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import math
 import os
 import shutil
 import signal
@@ -26,15 +27,13 @@ _LOADED = (
 class Trial(NamedTuple):
     """What to run in a copy: tests of some files, with a change or without any."""
 
-    change: Change
-    """Which change it is about."""
-    made: bool
-    """Whether it is made; else the tests are run as the checkout is."""
+    change: Change | None
+    """None: the tests are run as the checkout is."""
     files: tuple[str, ...]
-    only: tuple[str, ...] = ()
-    """Names of the tests to run; all where there are none."""
     without: tuple[str, ...] = ()
-    """Names of those not to run."""
+    """Names of the tests not to run."""
+    most: float = math.inf
+    """Processor time after which no other test is begun, s."""
 
 
 class Ended(NamedTuple):
@@ -42,8 +41,8 @@ class Ended(NamedTuple):
 
     failed: str
     """The first test that failed, or what else ended it; empty if all passed."""
-    slow: tuple[str, ...]
-    """Tests that were left as they took too long."""
+    slow: str
+    """The first test that was left as it took too long."""
     seconds: Mapping[str, float]
     """Processor time by test; infinite of those that did not pass."""
 
@@ -63,9 +62,9 @@ def load() -> None:
 def run(
     root: Path,
     trials: Iterable[Trial],
-    times: tuple[float, float],
+    longest: float,
     jobs: int,
-    ended: Callable[[Trial, Ended], Iterable[Trial]],
+    ended: Callable[[Trial, Ended], None],
 ) -> None:
     """Run trials, some at once, and tell of each as it ends; the checkout itself is left alone.
 
@@ -74,12 +73,12 @@ def run(
     root : Path
         Folder of the checkout.
     trials : iterable of Trial
-    times : tuple of float
-        Processor time, s, that one test may take, and that all of a trial may.
+    longest : float
+        Processor time that one test may take, s.
     jobs : int
         How many run at once.
     ended : callable
-        Is given each trial and how it ended; returns those that are to follow next.
+        Is given each trial and how it ended.
     """
     waiting = list(trials)[::-1]
     with tempfile.TemporaryDirectory(prefix="octsim-mutants-") as name:
@@ -89,7 +88,7 @@ def run(
             while waiting or running:
                 while waiting and free:
                     trial, folder = waiting.pop(), free.pop()
-                    process = _started(trial, folder, times)
+                    process = _started(trial, folder, longest)
                     running[process] = trial, folder, time.monotonic() + _PATIENCE
                 time.sleep(0.05)
                 for process, (trial, folder, until) in list(running.items()):
@@ -98,7 +97,7 @@ def run(
                     if os.waitpid(process, os.WNOHANG)[0]:
                         del running[process]
                         free.append(folder)
-                        waiting.extend(ended(trial, _read(trial, folder)))
+                        ended(trial, _read(trial, folder))
         finally:
             for process in running:
                 os.killpg(process, signal.SIGKILL)
@@ -112,12 +111,12 @@ def _copied(root: Path, folder: Path) -> Path:
     return folder
 
 
-def _started(trial: Trial, folder: Path, times: tuple[float, float]) -> int:
+def _started(trial: Trial, folder: Path, longest: float) -> int:
     """Start a trial in a copy, and return the number of its process."""
     (folder / "ended.json").unlink(missing_ok=True)
-    file = folder / trial.change.module
-    shutil.copy2(file, folder / "unchanged")
-    if trial.made:
+    if trial.change:
+        file = folder / trial.change.module
+        shutil.copy2(file, folder / "unchanged")
         file.write_bytes(trial.change.made(file.read_bytes()))
     process = os.fork()
     if process:
@@ -127,12 +126,12 @@ def _started(trial: Trial, folder: Path, times: tuple[float, float]) -> int:
     try:
         os.setpgid(0, 0)
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
-        _run_here(trial, folder, *times)
+        _run_here(trial, folder, longest)
     finally:
         os._exit(0)
 
 
-def _run_here(trial: Trial, folder: Path, longest: float, most: float) -> None:
+def _run_here(trial: Trial, folder: Path, longest: float) -> None:
     import pytest
 
     os.chdir(folder)
@@ -142,12 +141,12 @@ def _run_here(trial: Trial, folder: Path, longest: float, most: float) -> None:
     # the copy's package, here and in the processes that tests start
     sys.path.insert(0, str(folder))
     os.environ["PYTHONPATH"] = str(folder)
-    timed = Timed(trial.only, trial.without, longest, most)
+    timed = Timed(trial.without, longest, trial.most)
     # compiled code divides by nought in silence
     unsaid = ("RuntimeWarning", "pytest.PytestAssertRewriteWarning")
     options = ["--quiet", "--tb=line", "-p", "no:cacheprovider"]
     options += [part for name in unsaid for part in ("-W", f"ignore::{name}")]
-    stop = ["--exitfirst"] if trial.made else []
+    stop = ["--exitfirst"] if trial.change else []
     code = pytest.main([*options, *stop, *trial.files], plugins=[timed])
     done = {"code": int(code), "failed": timed.failed, "slow": timed.slow, "seconds": timed.seconds}
     (folder / "ended.json").write_text(json.dumps(done), encoding="utf-8")
@@ -155,12 +154,13 @@ def _run_here(trial: Trial, folder: Path, longest: float, most: float) -> None:
 
 def _read(trial: Trial, folder: Path) -> Ended:
     """Read how a trial ended, and put back what it changed."""
-    shutil.copy2(folder / "unchanged", folder / trial.change.module)
+    if trial.change:
+        shutil.copy2(folder / "unchanged", folder / trial.change.module)
     try:
         held = json.loads((folder / "ended.json").read_bytes())
     except FileNotFoundError:
-        return Ended("the process dies", (), {})
+        return Ended("the process dies", "", {})
     failed = held["failed"]
     if not failed and not held["seconds"] and held["code"] not in (0, 5):
         failed = "the tests can't be imported"
-    return Ended(failed, tuple(held["slow"]), held["seconds"])
+    return Ended(failed, held["slow"], held["seconds"])

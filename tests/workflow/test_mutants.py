@@ -1,6 +1,7 @@
 """Mutation testing finds what no test notices, in a copy, and leaves the checkout alone."""
 
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -49,11 +50,36 @@ load()
 root, found = Path(sys.argv[1]), {}
 files, without = ("tests/optics/test_part.py",), ("tests/optics/test_part.py::" + sys.argv[2],)
 def ended(trial, how):
-    found[f"{trial.change.was} -> {trial.change.now}"] = how.failed or " ".join(how.slow)
-    return []
-every = [Trial(one, True, files, (), without) for one in changes(root, "octsim/optics/part.py")]
-run(root, every, (5.0, 20.0), 2, ended)
+    found[f"{trial.change.was} -> {trial.change.now}"] = how.failed or how.slow
+every = [Trial(one, files, without) for one in changes(root, "octsim/optics/part.py")]
+run(root, every, 5.0, 2, ended)
 print(json.dumps(found))
+"""
+
+SLOW = """
+import pytest
+
+@pytest.mark.parametrize("case", range(4))
+def test_slow(case):
+    with open({ran!r}, "a") as file:
+        file.write(str(case))
+    while True:
+        pass
+
+def test_quick():
+    assert True
+
+def test_fails():
+    assert False
+"""
+TIME = """
+import json, sys
+from pathlib import Path
+from mutants.trials import Trial, load, run
+load()
+def ended(trial, how):
+    print(json.dumps(how.seconds))
+run(Path(sys.argv[1]), [Trial(None, ("tests/optics/test_part.py",))], 0.3, 1, ended)
 """
 
 
@@ -137,6 +163,23 @@ def test_a_trial_tells_what_is_noticed_and_leaves_the_checkout_alone(checkout: P
     }  # fmt: skip
     assert set(found.values()) == {"", "tests/optics/test_part.py::test_half"}
     assert whole() == before
+
+
+def test_without_a_change_tests_are_timed_and_of_one_that_is_slow_two_cases_are_run(
+    checkout: Path,
+) -> None:
+    ran = checkout / "ran.txt"
+    (checkout / "tests/optics/test_part.py").write_text(SLOW.format(ran=str(ran)))
+    done = subprocess.run(
+        [sys.executable, "-c", TIME, str(checkout)], check=True, capture_output=True,
+        text=True, env={"PYTHONPATH": str(ROOT / "benchmarks"), "PATH": ""},
+    )  # fmt: skip
+    taken = {name.partition("::")[2]: took for name, took in json.loads(done.stdout).items()}
+    assert taken.pop("test_quick") < 0.3
+    assert taken == {
+        **{f"test_slow[{case}]": math.inf for case in range(4)}, "test_fails": math.inf,
+    }  # fmt: skip
+    assert ran.read_text() == "01"
 
 
 def test_the_page_counts_what_is_noticed_and_lists_the_rest(checkout: Path) -> None:
