@@ -5,8 +5,9 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import yaml
 
@@ -62,6 +63,28 @@ class Checkout:
             for path in sorted(folder.rglob("*"))
             if path.suffix in {".nc", ".png", ".svg", ".pdf", ".txt"}
         }
+
+
+class Finished(NamedTuple):
+    """A run that was made from nothing to its end."""
+
+    checkout: Checkout
+    seconds: float
+    """That it took."""
+
+    def copy(self, folder: Path) -> Checkout:
+        """Return a checkout of its own with what was made, and the times of its files."""
+        checkout = Checkout(folder)
+        for part in ("results", ".snakemake", ".octsim"):
+            shutil.copytree(self.checkout.folder / part, folder / part)
+        return checkout
+
+
+def finished_in(folder: Path) -> Finished:
+    """Run the small config to its end in a folder."""
+    checkout, began = Checkout(folder), time.monotonic()
+    checkout.run(TINY)
+    return Finished(checkout, time.monotonic() - began)
 
 
 def merged(*overlays: dict[str, Any]) -> dict[str, Any]:

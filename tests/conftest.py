@@ -8,7 +8,9 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+from checkout import Finished, finished_in
 from hypothesis import settings
+from made_once import Once
 from made_runs import SWEEP, WHOLE, every_stage
 
 import octsim
@@ -45,15 +47,28 @@ def planned(tmp_path: Path) -> Callable[..., str]:
 
 
 @pytest.fixture(scope="session")
-def stages() -> dict[str, xr.Dataset]:
-    """Make every dataset of a small run, once: no test changes them in place."""
-    return every_stage(load_config(WHOLE), 2)
+def once(tmp_path_factory: pytest.TempPathFactory, worker_id: str) -> Once:
+    """Give what makes a thing in one worker for all."""
+    own = tmp_path_factory.getbasetemp()
+    return Once(own if worker_id == "master" else own.parent)
 
 
 @pytest.fixture(scope="session")
-def spectra() -> xr.Dataset:
+def stages(once: Once) -> dict[str, xr.Dataset]:
+    """Make every dataset of a small run, once: no test changes them in place."""
+    return once.made("stages", lambda _: every_stage(load_config(WHOLE), 2))
+
+
+@pytest.fixture(scope="session")
+def spectra(once: Once) -> xr.Dataset:
     """Make the spectra of an accurate sweep, once: no test changes them in place."""
-    return octsim.spectra(SWEEP, octsim.detections(SWEEP))
+    return once.made("spectra", lambda _: octsim.spectra(SWEEP, octsim.detections(SWEEP)))
+
+
+@pytest.fixture(scope="session")
+def finished(once: Once) -> Finished:
+    """Give the folder of a whole run by snakemake; tests change copies of it."""
+    return once.made("finished", finished_in)
 
 
 CALIBRATED = {
@@ -67,12 +82,12 @@ BY_RAYS = {
 
 
 @pytest.fixture(scope="session")
-def calibrated() -> xr.Dataset:
+def calibrated(once: Once) -> xr.Dataset:
     """Calibrate the thesis's instrument at a few diameters, focused by a given law."""
-    return calibration(load_config(CALIBRATED), None, 2)
+    return once.made("calibrated", lambda _: calibration(load_config(CALIBRATED), None, 2))
 
 
 @pytest.fixture(scope="session")
-def calibrated_by_rays() -> xr.Dataset:
+def calibrated_by_rays(once: Once) -> xr.Dataset:
     """Calibrate it by light paths, over more diameters."""
-    return calibration(load_config(BY_RAYS), None, 2)
+    return once.made("calibrated_by_rays", lambda _: calibration(load_config(BY_RAYS), None, 2))

@@ -7,6 +7,8 @@ import xarray as xr
 import octsim
 from octsim.datasets.files import write
 from octsim.datasets.keys import stages_of
+from octsim.studies.calibration.parameter import Parameter
+from octsim.studies.calibration.parameters import PARAMETERS
 
 TINY = {
     "run": "tiny",
@@ -33,6 +35,14 @@ SWEEP = octsim.load_config(
     }
 )
 """The config of the fixture `spectra`."""
+
+
+def few_parameters(*names: str) -> dict[str, Parameter]:
+    """Return a calibration's table of parameters, of which these alone count: it takes less."""
+    return {
+        name: one if name in names else one._replace(counts=lambda _: False)
+        for name, one in PARAMETERS.items()
+    }
 
 
 def make(folder: Path, *overlays: dict[str, object], scan: bool = True) -> octsim.Config:

@@ -6,13 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from made_runs import every_stage
+from made_runs import every_stage, few_parameters
 
 import octsim
 from octsim.config.load import load_config
 from octsim.config.models import Config
 from octsim.datasets.files import write
 from octsim.phase.measured_series import read_series
+from octsim.studies.calibration import parameters
 from octsim.studies.calibration.expansion import series_expansion
 from octsim.studies.calibration.study import calibration
 from octsim.studies.effects import study as study_of_effects
@@ -59,7 +60,10 @@ def full_run(folder: Path) -> Path:
     )
     made = every_stage(config)
     made["phase_slope"] = octsim.phase_slope(config, made["fourier"], made["spectra"])
-    made["calibration"] = calibration(config, None, 2)
+    with pytest.MonkeyPatch.context() as patch:
+        few = few_parameters("diameter", "gap", "neuron", "focus", "wavelength_max")
+        patch.setattr(parameters, "PARAMETERS", few)
+        made["calibration"] = calibration(config, None, 2)
     made["expansion"] = series_expansion(config, read_series(series), made["calibration"])
     return written(made | _studies(config), folder)
 

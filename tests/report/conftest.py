@@ -4,22 +4,24 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+from made_once import Once
 from report_runs import full_run, written
 
 from octsim.report.page import report
 
 
+def reported(folder: Path) -> Path:
+    report(folder)
+    return folder
+
+
 @pytest.fixture(scope="session")
-def plain(stages: dict[str, xr.Dataset], tmp_path_factory: pytest.TempPathFactory) -> Path:
+def plain(stages: dict[str, xr.Dataset], once: Once) -> Path:
     """Write a run without anything beside it, and its report."""
-    folder = written(stages, tmp_path_factory.mktemp("plain") / "whole")
-    report(folder)
-    return folder
+    return once.made("plain", lambda folder: reported(written(stages, folder / "whole")))
 
 
 @pytest.fixture(scope="session")
-def full(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def full(once: Once) -> Path:
     """Write a run with everything beside it that a report shows, and its report."""
-    folder = full_run(tmp_path_factory.mktemp("full") / "looked")
-    report(folder)
-    return folder
+    return once.made("full", lambda folder: reported(full_run(folder / "looked")))

@@ -6,12 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from made_runs import few_parameters
 
 import octsim
 from octsim.config.load import load_config
 from octsim.instrument.points import LightAtPoint, Points
 from octsim.schemes.light import Found
-from octsim.studies.calibration import round_trips
+from octsim.studies.calibration import parameters, round_trips
 from octsim.studies.causes.study import causes
 from octsim.studies.estimators.study import estimators
 from octsim.studies.tradeoff.measured_cost import sweep_cost
@@ -81,6 +82,7 @@ def test_a_study_s_light_is_kept_and_comes_back_to_the_bit(
     study: Callable[..., xr.Dataset], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(round_trips, "TRIALS", 3)
+    monkeypatch.setattr(parameters, "PARAMETERS", few_parameters("diameter", "gap"))
     kept: dict[tuple[bytes, float, float], Found] = {}
     first, again = Remembered(kept), Remembered(kept)
     traced, known = study(points=first), study(points=again)

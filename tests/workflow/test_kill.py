@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from checkout import TINY, Checkout
+from checkout import TINY, Checkout, Finished
 
 from octsim.datasets.gallery import FORMS
 
@@ -26,32 +26,23 @@ def start(checkout: Checkout) -> subprocess.Popen[bytes]:
     )  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, bytes], float]:
-    checkout = Checkout(tmp_path_factory.mktemp("whole"))
-    began = time.monotonic()
-    checkout.run(TINY)
-    return checkout.results(), time.monotonic() - began
-
-
 @pytest.mark.parametrize(
     "seed", [0, *(pytest.param(seed, marks=pytest.mark.trial) for seed in range(1, KILLS))]
 )
 def test_a_killed_run_resumes_to_the_same_bits(
-    seed: int, whole: tuple[dict[str, bytes], float], tmp_path: Path
+    seed: int, finished: Finished, tmp_path: Path
 ) -> None:
-    results, seconds = whole
     draw = random.Random(seed)
     checkout = Checkout(tmp_path)
     running = start(checkout)
-    time.sleep(draw.uniform(0.1, 1.0) * seconds)
+    time.sleep(draw.uniform(0.1, 1.0) * finished.seconds)
     if draw.random() < 0.5:
         running.kill()  # the jobs are left alone, and must end by themselves
     else:
         os.killpg(running.pid, signal.SIGKILL)
     running.wait()
     checkout.run(TINY)
-    assert checkout.results() == results
+    assert checkout.results() == finished.checkout.results()
     hidden = [p for p in (tmp_path / "results").rglob(".*") if p.name != ".lock"]
     assert len(hidden) <= 1  # at most the unfinished file of the moment
 
@@ -82,9 +73,10 @@ def test_a_results_folder_that_is_none_is_one_line(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("damage", ["truncated", pytest.param("foreign", marks=pytest.mark.trial)])
-def test_a_damaged_dataset_stops_what_reads_it_and_stays(damage: str, tmp_path: Path) -> None:
-    checkout = Checkout(tmp_path)
-    checkout.run(TINY)
+def test_a_damaged_dataset_stops_what_reads_it_and_stays(
+    damage: str, finished: Finished, tmp_path: Path
+) -> None:
+    checkout = finished.copy(tmp_path)
     file = tmp_path / "results" / "tiny" / "spectra.nc"
     bad = file.read_bytes()[:1000] if damage == "truncated" else b"somebody's notes"
     time.sleep(0.05)

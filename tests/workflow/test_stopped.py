@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from checkout import ROOT, TINY, Checkout
+from checkout import ROOT, TINY, Checkout, Finished
 from terminal import Terminal, processes_in
 
 LINE = "octsim: stopped; run the same command again to go on"
@@ -18,13 +18,6 @@ SNAKEMAKE = [sys.executable, "-m", "snakemake", "--configfile", "mine.yaml"]
 MAKE = ["make", "-o", ".venv/run", "results", "CONFIG=mine.yaml"]
 # once the job that writes it has begun, the first of them while it compiles
 MOMENTS = (".snakemake", "logs/focus_scan.log", "logs/detections.log", "logs/figures.log")
-
-
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
-    checkout = Checkout(tmp_path_factory.mktemp("whole"))
-    checkout.run(TINY)
-    return checkout.results()
 
 
 def checkout_in(folder: Path) -> Checkout:
@@ -67,7 +60,7 @@ def stopped_at(
     ids=["run-INT", "run-TERM", "snakemake-INT", "snakemake-TERM", "make-INT"],
 )
 def test_a_run_stopped_again_and_again_says_one_line_each_time_and_comes_to_the_same_bits(
-    command: list[str], number: signal.Signals, whole: dict[str, bytes], tmp_path: Path
+    command: list[str], number: signal.Signals, finished: Finished, tmp_path: Path
 ) -> None:
     checkout = checkout_in(tmp_path)
     # a bare snakemake that is just being loaded has no code of octsim's yet
@@ -82,7 +75,7 @@ def test_a_run_stopped_again_and_again_says_one_line_each_time_and_comes_to_the_
         else:
             assert status == 128 + number
     checkout.run(TINY)
-    assert checkout.results() == whole
+    assert checkout.results() == finished.checkout.results()
 
 
 def test_a_run_whose_command_is_killed_ends_too(tmp_path: Path) -> None:

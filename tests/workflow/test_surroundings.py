@@ -9,19 +9,12 @@ from pathlib import Path
 
 import pytest
 import yaml
-from checkout import GIVEN, ROOT, TINY, Checkout, merged
+from checkout import GIVEN, ROOT, TINY, Checkout, Finished, merged
 
 OVERLAY = merged(TINY, GIVEN)
 SLOPE = ("--cores", "1", "results/tiny/phase_slope.nc")
 EXPANSION = ("--cores", "1", "expansion")
 AHEAD = time.time() + 7200
-
-
-@pytest.fixture(scope="module")
-def plain(tmp_path_factory: pytest.TempPathFactory) -> Checkout:
-    checkout = Checkout(tmp_path_factory.mktemp("plain"))
-    checkout.run(OVERLAY, "--cores", "1")
-    return checkout
 
 
 def own_environment(folder: Path) -> Path:
@@ -52,7 +45,7 @@ def test_a_run_works_in_a_folder_of_any_name(name: str, tmp_path: Path) -> None:
 
 
 def test_what_the_environment_holds_for_other_programs_changes_no_bit(
-    plain: Checkout, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    finished: Finished, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     checkout = Checkout(tmp_path)
     (tmp_path / "matplotlibrc").write_bytes(b"\xff\xfe no text")
@@ -80,8 +73,8 @@ def test_what_the_environment_holds_for_other_programs_changes_no_bit(
         "OMP_NUM_THREADS": "lots",
     }.items():
         monkeypatch.setenv(variable, value)
-    checkout.run(OVERLAY, "--cores", "1")
-    assert checkout.results() == plain.results()
+    checkout.run(TINY, "--cores", "1")
+    assert checkout.results() == finished.checkout.results()
 
 
 def make(folder: Path, target: str, *given: str, **environment: str) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 import xarray as xr
 import yaml
-from checkout import GIVEN, GRID, ROOT, TINY, Checkout, counts, merged
+from checkout import GIVEN, GRID, ROOT, TINY, Checkout, Finished, counts, merged
 from edits import EDITS, EVERYTHING, edit_of
 
 from octsim.config.known_keys import known_keys
@@ -28,10 +28,8 @@ FIGURES = [*(f"figure_{number}" for number in (1, 6, 7, 8, 9, 10, 11, 12)), "pat
 
 
 @pytest.fixture(scope="module")
-def law(tmp_path_factory: pytest.TempPathFactory) -> Checkout:
-    checkout = Checkout(tmp_path_factory.mktemp("law"))
-    checkout.run(TINY)
-    return checkout
+def law(finished: Finished, tmp_path_factory: pytest.TempPathFactory) -> Checkout:
+    return finished.copy(tmp_path_factory.mktemp("law"))
 
 
 @pytest.fixture(scope="module")
@@ -446,7 +444,8 @@ def test_an_estimate_is_printed_first_and_a_large_run_wants_to_be_confirmed(tmp_
 def test_points_are_kept_for_other_runs_and_for_going_back(tmp_path: Path) -> None:
     checkout = Checkout(tmp_path)
     start = merged(TINY, GIVEN)
-    checkout.run(start)
+    stages = ("--until", "focus_scan", "focus_law", "phase_slope")
+    checkout.run(start, *stages)
     shutil.rmtree(tmp_path / "results")
     shutil.rmtree(tmp_path / ".snakemake")
     for overlay, traced in (
@@ -457,7 +456,7 @@ def test_points_are_kept_for_other_runs_and_for_going_back(tmp_path: Path) -> No
         (merged(start, {"scene": {"gap": "6 nm"}}), 41),
         (start, 0),
     ):
-        checkout.run(overlay)
+        checkout.run(overlay, *stages)
         found = counts(checkout, overlay["run"])
         assert sum(one["points_traced"] for one in found.values()) == traced
         assert sum(sum(one.values()) for one in found.values()) == (49 if traced == 8 else 41)
