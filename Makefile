@@ -154,7 +154,8 @@ soak: .venv/dev
 
 NUMBER ?= 300
 mutants: .venv/dev
-	PYTHONPATH=benchmarks $(BIN)/python -P -m mutants --number $(NUMBER) --jobs $(CORES) --write
+	PYTHONPATH=benchmarks $(BIN)/python -P -m mutants --number $(NUMBER) --jobs $(CORES)
+	PYTHONPATH=benchmarks $(BIN)/python -P -m mutants --number $(NUMBER) --jobs $(CORES) --compiled --write
 
 clean:
 	rm -rf .venv .venv-peers results .snakemake

@@ -3,7 +3,7 @@
 Run by `make mutants`, which writes docs/mutants.md:
 
     python -m mutants [--number N] [--seed TEXT] [--jobs N] [--seconds S] [--longest S]
-        [--rooms ROOM ...] [--again] [--show] [--write]
+        [--rooms ROOM ...] [--again] [--compiled] [--show] [--write]
 """
 
 import argparse
@@ -21,6 +21,7 @@ from typing import Any
 from marked import write_part
 from mutants import page
 from mutants.changes import Change, changes
+from mutants.page import COMPILED, reasons
 from mutants.tests_of import OwnTests
 from mutants.trials import Ended, Trial, load, run
 
@@ -41,6 +42,8 @@ ROOMS = {
 _TURNS = 5 * ("kernels",) + 4 * ("readers",) + ("keys",)
 """Of ten changes that are drawn: there are a hundred times as many of kernels as of keys."""
 
+_COMPILED = 600.0
+"""Processor time, s, that a test of compiled code may take, with the compiler's."""
 _CLEARLY = 3.0
 """Times as long as without a change a test may take with one, before it has noticed it."""
 
@@ -58,19 +61,28 @@ def main() -> None:
     parser.add_argument(
         "--again", action="store_true", help="not those that were noticed the last time"
     )
+    parser.add_argument(
+        "--compiled",
+        action="store_true",
+        help="only those of which reasons.yaml names a test that notices them when it is compiled",
+    )
     parser.add_argument("--show", action="store_true", help="try none, say what is known")
     parser.add_argument(
         "--rooms", nargs="+", choices=list(ROOMS), default=list(ROOMS), help="to try changes of"
     )
     parser.add_argument("--write", action="store_true", help="write docs/mutants.md")
     asked = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped"))
     drawn = sample(ROOT, asked.seed, asked.number)
     patterns = [one for room in asked.rooms for one in ROOMS[room]]
     chosen = [one for one in drawn if any(fnmatch(one.module, p) for p in patterns)]
-    before: dict[str, str] = _read(KEPT / "noticed.json") if asked.again or asked.show else {}
-    noticed = {name: by for name, by in before.items() if by or asked.show}
-    if not asked.show:
-        _try([one for one in chosen if one.name not in noticed], noticed, asked)
+    goes_on = asked.again or asked.show or asked.compiled
+    noticed: dict[str, str] = _read(KEPT / "noticed.json") if goes_on else {}
+    left = [one for one in chosen if not noticed.get(one.name)]
+    if asked.compiled:
+        _try_compiled(left, noticed, asked.jobs)
+    elif not asked.show:
+        _try(left, noticed, asked)
     told = page.lines(ROOMS, drawn, noticed, asked.seed, (asked.longest, asked.seconds))
     print(*told, sep="\n")
     if asked.write:
@@ -79,12 +91,10 @@ def main() -> None:
 
 def _try(left: Sequence[Change], noticed: dict[str, str], asked: argparse.Namespace) -> None:
     """Try changes, and note of each which test noticed it; empty if none did."""
-    load()
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped"))
+    load(compiled=False)
     tests = OwnTests(ROOT)
     files = {change: tuple(tests.files(change.module)) for change in left}
     known = _timed(dict.fromkeys(chain.from_iterable(files.values())), asked)
-    tried: list[Change] = []
 
     def trial(change: Change) -> Trial:
         without = (
@@ -92,17 +102,41 @@ def _try(left: Sequence[Change], noticed: dict[str, str], asked: argparse.Namesp
         )
         return Trial(change, files[change], tuple(without), asked.seconds)
 
-    def ended(done: Trial, how: Ended) -> None:
-        if not done.change:
-            return
-        slowed = f"{how.slow} (takes too long)" if how.slow else ""
-        by = noticed[done.change.name] = how.failed or slowed
-        tried.append(done.change)
-        verdict = f"noticed by {by}" if by else "not noticed"
-        print(f"{len(tried)} of {len(left)}: {done.change.name}: {verdict}", flush=True)
-        _write(KEPT / "noticed.json", noticed)
+    longest = _CLEARLY * asked.longest
+    run(ROOT, map(trial, left), longest, asked.jobs, _Verdicts(len(left), noticed).say)
 
-    run(ROOT, [trial(change) for change in left], _CLEARLY * asked.longest, asked.jobs, ended)
+
+def _try_compiled(left: Sequence[Change], noticed: dict[str, str], jobs: int) -> None:
+    """Try changes as they are when compiled, by the test that is named for each."""
+    load(compiled=True)
+    named = {name: why.removeprefix(COMPILED) for name, why in reasons(COMPILED).items()}
+    trials = [Trial(one, (named[one.name],)) for one in left if one.name in named]
+    run(ROOT, trials, _COMPILED, jobs, _Verdicts(len(trials), noticed).say)
+
+
+class _Verdicts:
+    """What became of changes: said as they end, and kept.
+
+    Parameters
+    ----------
+    number : int
+        Of changes that are tried.
+    noticed : dict
+        The test that noticed each, by name; empty if none did. What is said is added.
+    """
+
+    def __init__(self, number: int, noticed: dict[str, str]) -> None:
+        self._number, self._noticed, self._tried = number, noticed, 0
+
+    def say(self, done: Trial, how: Ended) -> None:
+        """Note how the trial of a change ended."""
+        assert done.change
+        by = how.failed or (f"{how.slow} (takes too long)" if how.slow else "")
+        self._noticed[done.change.name] = by
+        self._tried += 1
+        verdict = f"noticed by {by}" if by else "not noticed"
+        print(f"{self._tried} of {self._number}: {done.change.name}: {verdict}", flush=True)
+        _write(KEPT / "noticed.json", self._noticed)
 
 
 def _timed(files: Iterable[str], asked: argparse.Namespace) -> dict[str, dict[str, float]]:
@@ -110,16 +144,19 @@ def _timed(files: Iterable[str], asked: argparse.Namespace) -> dict[str, dict[st
 
     It is kept for the code that it is of.
     """
-    kept, key = KEPT / "tests.json", f"{_code()} {asked.longest}"
-    known: dict[str, dict[str, float]] = _read(kept).get(key, {})
-    unknown = [file for file in files if file not in known]
+    code = _digest(*ROOT.glob("octsim/**/*.py"), *ROOT.glob("tests/*.py"))
+    names = {file: f"{file} {code} {_digest(ROOT / file)} {asked.longest}" for file in files}
+    kept: dict[str, dict[str, float]] = _read(KEPT / "tests.json")
+    known = {file: kept[name] for file, name in names.items() if name in kept}
 
     def ended(done: Trial, how: Ended) -> None:
-        known[done.files[0]] = dict(how.seconds)
-        print(f"{len(known)} files of tests are timed: {done.files[0]}", flush=True)
-        _write(kept, {key: known})
+        (file,) = done.files
+        known[file] = dict(how.seconds)
+        print(f"{len(known)} of {len(names)} files of tests are timed: {file}", flush=True)
+        _write(KEPT / "tests.json", {names[one]: seconds for one, seconds in known.items()})
 
-    run(ROOT, [Trial(None, (file,)) for file in unknown], asked.longest, asked.jobs, ended)
+    unknown = [Trial(None, (file,)) for file in names if file not in known]
+    run(ROOT, unknown, asked.longest, asked.jobs, ended)
     return known
 
 
@@ -146,10 +183,9 @@ def sample(root: Path, seed: str, number: int) -> list[Change]:
     return chosen[:number]
 
 
-def _code() -> str:
-    """Digest package and tests."""
+def _digest(*files: Path) -> str:
     whole = hashlib.sha256()
-    for file in sorted([*ROOT.glob("octsim/**/*.py"), *ROOT.glob("tests/**/*.py")]):
+    for file in sorted(files):
         whole.update(file.read_bytes())
     return whole.hexdigest()[:12]
 

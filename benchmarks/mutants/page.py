@@ -10,6 +10,15 @@ from mutants.changes import Change
 
 REASONS = Path(__file__).with_name("reasons.yaml")
 
+SAME, COMPILED = "the same: ", "compiled: "
+"""Reasons of changes that change nothing, and of those that a test notices when it is compiled."""
+
+
+def reasons(kind: str = "") -> dict[str, str]:
+    """Return why no test notices changes, by their names: all reasons, or those of a kind."""
+    told: dict[str, str] = yaml.safe_load(REASONS.read_text(encoding="utf-8")) or {}
+    return {name: why for name, why in told.items() if why.startswith(kind)}
+
 
 def lines(
     rooms: Mapping[str, Sequence[str]],
@@ -33,8 +42,7 @@ def lines(
     times : tuple of float
         Processor time, s, that one test may take, and that those of a change may.
     """
-    told = yaml.safe_load(REASONS.read_text(encoding="utf-8")) or {}
-    same = {name for name, why in told.items() if why.startswith("the same: ")}
+    told, same = reasons(), reasons(SAME)
     tried = [one for one in drawn if one.name in noticed]
     unnoticed = [one for one in tried if not noticed[one.name]]
     rows, whole = [], Counter[str]()

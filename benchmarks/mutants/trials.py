@@ -47,12 +47,17 @@ class Ended(NamedTuple):
     """Processor time by test; infinite of those that did not pass."""
 
 
-def load() -> None:
+def load(*, compiled: bool) -> None:
     """Import what all trials need, once: they are forks of this process.
 
     The package itself is imported by each, from its copy.
+
+    Parameters
+    ----------
+    compiled : bool
+        Whether numba compiles, which takes a minute for a kernel that is changed.
     """
-    os.environ["NUMBA_DISABLE_JIT"] = "1"
+    os.environ["NUMBA_DISABLE_JIT"] = "0" if compiled else "1"
     sys.dont_write_bytecode = True
     for name in _LOADED:
         with contextlib.suppress(ImportError):

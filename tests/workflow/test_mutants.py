@@ -46,7 +46,7 @@ import json, sys
 from pathlib import Path
 from mutants.changes import changes
 from mutants.trials import Trial, load, run
-load()
+load(compiled=False)
 root, found = Path(sys.argv[1]), {}
 files, without = ("tests/optics/test_part.py",), ("tests/optics/test_part.py::" + sys.argv[2],)
 def ended(trial, how):
@@ -76,7 +76,7 @@ TIME = """
 import json, sys
 from pathlib import Path
 from mutants.trials import Trial, load, run
-load()
+load(compiled=False)
 def ended(trial, how):
     print(json.dumps(how.seconds))
 run(Path(sys.argv[1]), [Trial(None, ("tests/optics/test_part.py",))], 0.3, 1, ended)
