@@ -35,6 +35,7 @@ CALIBRATED: dict[str, Any] = {
     "calibration": {
         "diameters": {"start": "1.3 um", "stop": "1.5 um", "num": 8},
         "estimator": "fft",
+        "scheme": "paths",
     },
     "expansion": {"series": "measured/phases.csv", "rest": 3},
 }

@@ -22,7 +22,7 @@ def scan(overlay: dict[str, Any], start: float, stop: float) -> tuple[Any, Any]:
             "sweep": {"diameters": {"start": "1.4 um", "stop": "1.5 um", "num": 2}},
             "focus_scan": {
                 "diameter": "1.4 um",
-                "focus": {"start": f"{start} um", "stop": f"{stop} um", "num": 61},
+                "focus": {"start": f"{start} um", "stop": f"{stop} um", "num": 41},
             },
         },
         overlay,
