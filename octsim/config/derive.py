@@ -96,8 +96,8 @@ def overlaid(base: Mapping[str, Any], overlay: Mapping[str, Any]) -> dict[str, A
     """Lay an overlay over a config's plain data, and below it what a preset it names stands for."""
     tracing = overlay.get("tracing")
     name = tracing.get("preset") if isinstance(tracing, Mapping) else None
-    preset = {"tracing": PRESETS.get(name, {})} if isinstance(name, str) else {}
-    return merge(merge(base, preset), overlay)
+    below = merge(base, {"tracing": PRESETS.get(name, {})}) if isinstance(name, str) else base
+    return merge(below, overlay)
 
 
 def validated(data: Mapping[str, Any]) -> Config:
