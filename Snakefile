@@ -13,10 +13,8 @@ import os
 import shlex
 import sys
 from collections.abc import Callable
-from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 # a script of the user's that is called octsim.py too, here or on PYTHONPATH, is not the package
 for place in sys.path[:]:
@@ -42,7 +40,7 @@ from octsim.base.say import noting_for
 from octsim.cli.job_server import PYTHON, SOCKET, start
 from octsim.cli.told import edit_of, result_of
 from octsim.config.derive import parts_of
-from octsim.config.handed import FOLDER as LOOKED
+from octsim.config.handed import FOLDER as LOOKED, keep_beside_runs
 from octsim.config.load import load_and_tell
 from octsim.config.models import Config
 from octsim.config.told import told
@@ -71,10 +69,7 @@ if workflow.cores is not None and workflow.cores < 1:
 noting_for("reading")
 if workflow.is_main_process and LOOKED not in os.environ:
     # jobs need not look at a grid's combinations again, on whatever node they are
-    with suppress(OSError):  # where nothing can be written it is said below
-        os.makedirs(".snakemake", exist_ok=True)
-        looked = TemporaryDirectory(prefix="looked-", dir=".snakemake")
-        os.environ[LOOKED] = os.path.abspath(looked.name)
+    looked = keep_beside_runs()  # where nothing can be written it is said below
 try:
     # the files themselves too, as snakemake's own reading lets a key stand twice
     run, said = load_and_tell(*workflow.configfiles, config)

@@ -11,7 +11,6 @@ from contextlib import suppress
 from difflib import get_close_matches
 from importlib.util import find_spec
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from types import FrameType
 from typing import Any
 
@@ -81,23 +80,26 @@ def require_workflow() -> None:
 def run(given: argparse.Namespace) -> int:
     """Check the config, have the workflow make what is asked for; return the exit status."""
     stops_at_signals(tuple)  # until the workflow is started
-    from octsim.config.handed import FOLDER
+    from octsim.config.handed import FOLDER, keep_beside_runs
     from octsim.config.load import load_and_tell
 
     require_workflow()
     configs, targets = _told_apart(given.words)
     configs = configs or [str(workflow_folder() / "config" / "default.yaml")]
-    with TemporaryDirectory(prefix="octsim-looked-") as looked:
-        os.environ[FOLDER] = looked  # by the processes of the run it is not looked at again
-        try:
-            config, _ = load_and_tell(*configs)
-            shown = "quiet" if given.quiet else "verbose" if given.verbose else ""
-            if not (shown or given.flags) and sys.stderr.isatty():
-                print("octsim: starting snakemake …", end="", file=sys.stderr, flush=True)
-            command = _command(configs, targets, config.run, given)
-            return _Running(command, given.flags, shown).ended()
-        finally:
-            del os.environ[FOLDER]
+    kept = keep_beside_runs()  # by the processes of the run it is not looked at again
+    try:
+        config, _ = load_and_tell(*configs)
+        shown = "quiet" if given.quiet else "verbose" if given.verbose else ""
+        if not (shown or given.flags) and sys.stderr.isatty():
+            print("octsim: starting snakemake …", end="", file=sys.stderr, flush=True)
+        command = _command(configs, targets, config.run, given)
+        return _Running(command, given.flags, shown).ended()
+    finally:
+        if kept:
+            os.environ.pop(FOLDER)
+            kept.cleanup()
+            with suppress(OSError):  # there is more in it where a run was begun
+                Path(".snakemake").rmdir()
 
 
 def _told_apart(words: Sequence[str]) -> tuple[list[str], list[str]]:

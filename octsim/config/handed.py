@@ -6,10 +6,28 @@ import os
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 FOLDER = "OCTSIM_LOOKED"
 """Environment variable with the folder of a command's own, where it is kept what was looked at."""
+
+
+def keep_beside_runs() -> TemporaryDirectory[str] | None:
+    """Make the folder in ``.snakemake``, which every node of a run sees; it goes at the end.
+
+    Returns
+    -------
+    TemporaryDirectory or None
+        None where nothing can be written here, and nothing is kept.
+    """
+    try:
+        Path(".snakemake").mkdir(exist_ok=True)
+        kept = TemporaryDirectory(prefix="looked-", dir=".snakemake")
+    except OSError:
+        return None
+    os.environ[FOLDER] = str(Path(kept.name).absolute())
+    return kept
 
 
 class Handed(NamedTuple):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from checkout import GIVEN, ROOT, TINY, merged
+from checkout import GIVEN, GRID, ROOT, TINY, merged
 
 from octsim.cli import main as command
 from octsim.cli import run
@@ -87,6 +87,28 @@ def test_words_stand_on_both_sides_of_options_and_flags_are_handed_on(
     assert line[3:5] == ["calibration", "results/tiny/fourier.nc"]
     assert line[line.index("--cores") + 1] == "3"
     assert line[-4:] == ["--configfile", "mine.yaml", "--dry-run", "-q"]
+
+
+def test_a_grid_that_was_looked_at_lies_where_every_node_of_the_run_sees_it(
+    monkeypatch: pytest.MonkeyPatch, folder: Path
+) -> None:
+    seen: list[Path] = []
+
+    def ended(_running: run._Running) -> int:
+        seen.extend(Path(os.environ["OCTSIM_LOOKED"]).iterdir())
+        return 0
+
+    (folder / "grid.yaml").write_text(yaml.safe_dump(GRID), encoding="utf-8")
+    monkeypatch.delenv("OCTSIM_LOOKED", raising=False)
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr(run, "stops_at_signals", lambda _: None)
+    monkeypatch.setattr(run._Running, "ended", ended)
+    assert command.main(["run", "grid.yaml"]) == 0
+    (found,) = seen
+    assert found.parents[1] == folder / ".snakemake"
+    assert found.suffix == ".json"
+    assert not (folder / ".snakemake").exists()
+    assert "OCTSIM_LOOKED" not in os.environ
 
 
 def test_a_wheel_in_an_empty_folder_makes_a_run(tmp_path: Path) -> None:
