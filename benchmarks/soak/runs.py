@@ -102,7 +102,7 @@ class Run:
         """
         terminal = self.start()
         # before that the command is Python alone, which ends without a word of octsim's
-        terminal.until(lambda: terminal.has_ended() or _handles(terminal.pid, SIGTERM))
+        terminal.until(lambda: terminal.has_ended() or self._handles(terminal.pid, SIGTERM))
         _wait(terminal, after)
         began = time.monotonic()
         if number == SIGKILL:
@@ -117,6 +117,20 @@ class Run:
         seen = ended(terminal)
         took = time.monotonic() - began
         return Stop(number, _alone(self.folder, seen), took)
+
+    def _handles(self, process: int, number: Signals) -> bool:
+        """Return whether a process is the command and handles a signal, as Linux tells it.
+
+        Before it is the command it is a copy of this process, which handles signals too.
+        """
+        with suppress(OSError):
+            about = Path("/proc", str(process))
+            words = (about / "cmdline").read_bytes().split(b"\0")[:-1]
+            if words == [os.fsencode(one) for one in self._command]:
+                for line in (about / "status").read_text().splitlines():
+                    if line.startswith("SigCgt:"):
+                        return bool(int(line.split()[1], 16) >> (number - 1) & 1)
+        return False
 
     def share_cache(self, folder: Path) -> None:
         """Have its points in a folder of others too, without a word of it in the config."""
@@ -200,15 +214,6 @@ def _alone(folder: Path, seen: Seen) -> Seen:
             return seen._replace(screen=[*seen.screen, f"{_LEFT}: {left}"])
         time.sleep(_LOOK)
     return seen
-
-
-def _handles(process: int, number: Signals) -> bool:
-    """Return whether a process handles a signal itself, as Linux tells it."""
-    with suppress(OSError):
-        for line in Path(f"/proc/{process}/status").read_text().splitlines():
-            if line.startswith("SigCgt:"):
-                return bool(int(line.split()[1], 16) >> (number - 1) & 1)
-    return False
 
 
 def _done(command: list[str]) -> bool:
