@@ -144,9 +144,10 @@ def _cells(line: str, between: str) -> list[str]:
     return [_COMMA.sub(r"\1.\2", cell) if _COMMA.fullmatch(cell) else cell for cell in stripped]
 
 
-def _quoted(line: str, between: str, *, skipinitialspace: bool = False) -> list[str]:
+def _quoted(line: str, between: str, mark: str = '"') -> list[str]:
+    blanks = between == " "  # of which several may follow each other
     try:
-        return next(csv.reader([line], delimiter=between, skipinitialspace=skipinitialspace))
+        return next(csv.reader([line], delimiter=between, quotechar=mark, skipinitialspace=blanks))
     except csv.Error as error:
         raise ValueError(
             f"{line[:40]!r}... can't be read ({error}); give a number in each cell"
@@ -155,8 +156,9 @@ def _quoted(line: str, between: str, *, skipinitialspace: bool = False) -> list[
 
 def _heading(line: str, between: str) -> list[str]:
     if between == " ":
-        if '"' in line or "'" in line:
-            return _quoted(line, " ", skipinitialspace=True)
+        mark = next((one for one in "\"'" if one in line), None)
+        if mark:
+            return _quoted(line, " ", mark)
         parts = re.split(r"\s{2,}", _OF_WORDS.sub("_", line))
         return parts if len(parts) > 1 else parts[0].replace(", ", ",").split()
     cells = _cells(line, between)

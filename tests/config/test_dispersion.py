@@ -92,6 +92,8 @@ def test_indices_are_those_of_the_middle_of_the_band() -> None:
         ("Wavelength, nm\tRefractive Index\n600\t1.4\n750\t1.39\n950\t1.38\n", {}),
         ("lambda/nm n(real)\n600 1.4\n750 1.39\n950 1.38\n", {}),
         ("Wavelength (nm)  Refractive Index\n600   1.4\n750  1.39\n950  1.38\n", {}),
+        ('"wavelength (nm)"  "refractive index"\n600 1.4\n750 1.39\n950 1.38\n', {}),
+        ("# 'wavelength (nm)' 'n'\n600 1.4\n750 1.39\n950 1.38\n", {}),
         ("wavelength_nm refractive index\n600 1.4\n750 1.39\n950 1.38\n", {}),
         ("# wavelength [nm] n\n600 1.4\n750 1.39\n950 1.38\n", {}),
         ("# of ours\n# wavelength (nm), n\n600 1.4\n750 1.39\n950 1.38\n", {}),
