@@ -89,9 +89,8 @@ def _decoded(path: Path, data: bytes, encoding: str) -> str:
         ) from None
 
 
-def lines(data: bytes, start: int = 0, row: int = 1, end: int | None = None) -> Iterator[Line]:
-    """Return the lines of a text from some byte on, one after the other."""
-    end = len(data) if end is None else end
+def lines(data: bytes, start: int, row: int, end: int) -> Iterator[Line]:
+    """Return the lines between two bytes of a text, the first of which is some row of it."""
     while start < end:
         stop = data.find(b"\n", start, end)
         stop = end if stop < 0 else stop
