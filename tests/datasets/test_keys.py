@@ -12,7 +12,7 @@ from octsim.config.scheme import light_keys
 from octsim.datasets import keys
 from octsim.datasets.catalog import CATALOG
 from octsim.datasets.gallery import figures_of
-from octsim.datasets.keys import inputs_of, jobs_of, keys_read, stage_axes, stages_of
+from octsim.datasets.keys import differing, inputs_of, jobs_of, keys_read, stage_axes, stages_of
 from octsim.datasets.stage import Stage
 
 
@@ -74,6 +74,27 @@ def test_an_expansion_is_by_a_calibration_or_where_more_is_fitted_by_responses()
     row = CATALOG["expansion"]
     assert inputs_of(row, Config()) == ("calibration",)
     assert inputs_of(row, more) == inputs_of(row, one) == ("responses",)
+
+
+@pytest.mark.parametrize(
+    ("edit", "of_detections", "of_slopes"),
+    [
+        ({}, [], []),
+        ({"processing": {"window": "boxcar"}}, [], ["processing"]),
+        (
+            {"scene": {"gap": "7 nm"}, "processing": {"window": "boxcar"}},
+            ["scene"], ["scene", "processing"],
+        ),
+        ({"grid": {"processing.window": ["hann", "boxcar"]}}, [], [
+            "grid.processing.window", "grid.combine"]),
+    ],
+)  # fmt: skip
+def test_keys_are_named_in_which_another_config_differs_for_a_dataset(
+    edit: dict[str, object], of_detections: list[str], of_slopes: list[str]
+) -> None:
+    other = load_config(GIVEN, edit).to_dict()
+    assert differing("detections", load_config(GIVEN), other) == of_detections
+    assert differing("phase_slope", load_config(GIVEN), other) == of_slopes
 
 
 @pytest.mark.parametrize("combine", ["product", "zip"])

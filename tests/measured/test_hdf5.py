@@ -97,3 +97,14 @@ def test_a_number_that_is_one_of_a_kind_is_no_array(tmp_path: Path) -> None:
         file["picture"] = np.ones((9, 9))
     with opened(tmp_path / "a", samples=K) as found:
         assert found.name == f"{tmp_path / 'a'}, /spectra"
+
+
+def test_a_spectrum_by_itself_has_the_axis_that_is_attached_to_it(tmp_path: Path) -> None:
+    with h5.File(tmp_path / "a", "w") as file:
+        file["spectrum"], file["wavelength"] = COUNTS[0], NM + 1
+        file["calibration/wavelength"] = NM
+        file["calibration/wavelength"].make_scale()
+        file["spectrum"].dims[0].attach_scale(file["calibration/wavelength"])
+    with opened(tmp_path / "a") as found:
+        np.testing.assert_array_equal(found.counts[:], COUNTS[:1])
+        np.testing.assert_array_equal(found.axis.values, NM)

@@ -1,5 +1,6 @@
 """Arrays of MATLAB are found by their names, in structures too."""
 
+import struct
 from pathlib import Path
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 from recordings import COUNTS, NM, K, T
 from scipy.io import savemat
 
-from octsim.base.errors import DatasetError
+from octsim.base.errors import DatasetError, FileError
 from octsim.measured.open import opened_recording
 
 
@@ -42,3 +43,14 @@ def test_truth_values_are_no_counts(tmp_path: Path) -> None:
     savemat(tmp_path / "a.mat", {"spectra": COUNTS > 9})
     with pytest.raises(DatasetError, match="truth values"), opened_recording(tmp_path / "a.mat"):
         pass
+
+
+@pytest.mark.parametrize(("rows", "said"), [(12_500_000, "can't be read"),
+    (12_500_001, "28 bytes are said to hold 100000008, and it is not unpacked")])  # fmt: skip
+def test_no_more_than_100_mb_may_be_said_to_stand_in_a_small_file(
+    rows: int, said: str, tmp_path: Path
+) -> None:
+    header = struct.pack("<5i", 0, rows, 1, 0, 8) + b"spectra\0"  # of version 4, of doubles
+    (tmp_path / "a.mat").write_bytes(header)
+    with pytest.raises(FileError, match=said), opened_recording(tmp_path / "a.mat") as found:
+        _ = found.counts[:]

@@ -58,7 +58,9 @@ def test_a_heading_of_numbers_that_count_is_known(text: str) -> None:
 @pytest.mark.parametrize(
     ("first", "step", "unit"),
     [(800, 1, "nm"), (899, -1, "nm"), (0.8, 0.01, "um"), (0, 1, None), (19_990, 1, None),
-     (30, 0.1, None), (800, 0, None), (np.nan, 1, None)],
+     (30, 0.1, None), (800, 0, None), (np.nan, 1, None), (200, 1, "nm"), (199.9, 1, None),
+     (20_000, -1, "nm"), (20_001, -1, None), (0.2, 0.001, "um"), (0.19, 0.001, None),
+     (20, -0.1, "um"), (20.01, -0.1, None)],
 )  # fmt: skip
 def test_wavelengths_are_plausible(first: float, step: float, unit: str | None) -> None:
     assert plausible(first + step * np.arange(20.0)) == unit
@@ -68,7 +70,8 @@ def test_wavelengths_are_plausible(first: float, step: float, unit: str | None) 
 @pytest.mark.parametrize(
     ("name", "first", "unit"),
     [("wavelength", 800.0, "nm"), ("wavelength", 0.8, "um"), ("wavelength", 0.8e-6, "m"),
-     ("wavenumber", 7.5, "1/um"), ("time", 1e9, "s")],
+     ("wavelength", 0.2e-6, "m"), ("wavelength", 18e-6, "m"), ("wavenumber", 7.5, "1/um"),
+     ("time", 1e9, "s")],
 )  # fmt: skip
 def test_a_unit_that_is_not_written_is_the_likely_one(name: str, first: float, unit: str) -> None:
     values, said = with_unit(first * np.linspace(1, 1.1, 9), Heading(name, None), "it")
@@ -79,6 +82,8 @@ def test_a_unit_that_is_not_written_is_the_likely_one(name: str, first: float, u
 @pytest.mark.parametrize(
     ("heading", "first", "said"),
     [(Heading("wavelength", None), 50.0, "it: wavelength has no unit, and 50 to 55 is none of"),
+     (Heading("wavelength", None), 199e-9, "wavelength has no unit, and 1.99e-07 to 2.189e-07"),
+     (Heading("wavelength", None), 19e-6, "wavelength has no unit"),
      (Heading("wavenumber", None), 7500.0, "wavenumber has no unit"),
      (Heading("wavelength", "1/um"), 0.8, "the unit of wavelength is '1/um'"),
      (Heading("time", "nm"), 0.8, "the unit of time is 'nm'")],

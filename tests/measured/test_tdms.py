@@ -28,6 +28,15 @@ def test_channels_are_spectra_if_nothing_else_tells(tmp_path: Path) -> None:
         np.testing.assert_array_equal(found.counts[:], COUNTS)
         assert found.time is not None
         assert (found.time.values.tolist(), found.time.unit) == (MS.tolist(), "s")
+        assert found.understood[-1] == "headings are times in s: 0 to 1.375"
+
+
+def test_channels_of_other_names_say_nothing_of_times(tmp_path: Path) -> None:
+    write_tdms(tmp_path / "a", *(("camera", f"line {at}", row) for at, row in enumerate(COUNTS)))
+    with opened_recording(tmp_path / "a") as found:
+        assert found.time is None
+        assert all(found.understood)
+        assert not any("times" in line for line in found.understood)
 
 
 def test_an_index_beside_a_file_is_not_read(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from recordings import ocean_single, thor_spectra
+from recordings import OCEAN, ocean_single, thor_spectra
 
 from octsim.base.errors import DatasetError
 from octsim.measured.open import opened_recording
@@ -170,6 +170,54 @@ def test_a_first_row_and_column_that_both_may_be_the_axis_are_told_by_the_sample
     assert seen[0] == "wavelength"
     counts, _, _ = read(tmp_path / "table", text, samples=14)
     np.testing.assert_array_equal(counts, square[1:])
+
+
+def test_a_row_of_headings_and_a_column_that_both_may_be_the_axis_are_told_by_the_samples(
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / "table"
+    inner = np.add.outer(np.arange(9), 0.25 * np.arange(12))
+    text = f"row,{AXIS}\n" + rows(*(str(900 + at) for at in range(9)), counts=inner)
+    with pytest.raises(DatasetError, match="the first row, row 1, and the first column may both"):
+        read(path, text)
+    np.testing.assert_array_equal(read(path, text, samples=9)[0], inner.T)
+    np.testing.assert_array_equal(read(path, text, samples=12)[0], inner)
+
+
+@pytest.mark.parametrize("as_rows", [False, True])
+def test_an_axis_and_one_spectrum_need_no_headings(as_rows: bool, tmp_path: Path) -> None:
+    pairs = np.stack((NM, COUNTS[0]))
+    every = pairs if as_rows else pairs.T
+    text = "".join(",".join(f"{one:g}" for one in row) + "\n" for row in every)
+    counts, seen, _ = read(tmp_path / "table", text)
+    np.testing.assert_array_equal(counts, COUNTS[:1])
+    assert seen == ("wavelength", "nm", None)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "cp1252"])
+def test_letters_beyond_ascii_are_read_as_they_were_written(encoding: str, tmp_path: Path) -> None:
+    path = tmp_path / "table"
+    path.write_bytes(("Wellenlänge (nm),a,b,c\n" + columns()).encode(encoding))
+    with opened_recording(path) as found:
+        assert any("column 1, 'Wellenlänge (nm)'" in line for line in found.understood)
+        said = "it is written in Windows-1252" in found.understood
+        assert said == (encoding == "cp1252")
+
+
+def test_how_many_spectra_of_how_many_samples_are_found_by_what_is_said(tmp_path: Path) -> None:
+    for text, said in (
+        (TABLES["a unit alone"][0], "3 spectra of 12 samples, told by the heading 'nm'"),
+        (TABLES["rows, the axis named"][0], "3 spectra of 12 samples, told by row 1"),
+        (thor_spectra(), "1 spectrum of 40 samples, told by the header"),
+    ):
+        assert any(line.startswith(said) for line in read(tmp_path / "table", text)[2])
+
+
+@pytest.mark.parametrize(("text", "above"), [(ocean_single(), OCEAN), (thor_spectra(), None)])
+def test_lines_above_the_numbers_are_counted(text: str, above: str | None, tmp_path: Path) -> None:
+    number = (above or text.partition("[Data]\n")[0] + "\n").count("\n")
+    said = f"; {number} lines are above, and not read"
+    assert any(line.endswith(said) for line in read(tmp_path / "table", text)[2])
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from recordings import COUNTS, DATA_FILE, K, T, thor_header, write_oct
 
-from octsim.base.errors import DatasetError
+from octsim.base.errors import DatasetError, FileError
 from octsim.measured.open import opened_recording
 
 
@@ -57,6 +57,29 @@ def test_files_of_other_samples_are_refused(tmp_path: Path) -> None:
     write_oct(tmp_path / "a.oct", thor_header(entry(), other), members)
     with (
         pytest.raises(DatasetError, match="8 and 40 samples"),
+        opened_recording(tmp_path / "a.oct"),
+    ):
+        pass
+
+
+@pytest.mark.parametrize("number", [1, 3, 4, 5])
+def test_the_first_three_files_of_spectra_are_named(number: int, tmp_path: Path) -> None:
+    names = [f"Spectral{place}" for place in range(number)]
+    entries = [entry(spectra="2", name=name) for name in names]
+    members = {f"data/{name}.data": COUNTS[:2].tobytes() for name in names}
+    write_oct(tmp_path / "a.oct", thor_header(*entries), members)
+    with opened_recording(tmp_path / "a.oct") as found:
+        assert found.counts.shape == (2 * number, K)
+        named = ", ".join(f"data/{name}.data" for name in names[:3])
+        more = " ..." if number > 3 else ""
+        assert f"spectra are in {named}{more}" in found.understood
+
+
+def test_a_header_that_is_as_long_as_no_other_is_refused(tmp_path: Path) -> None:
+    header = thor_header(entry()).ljust(64_000_001)
+    write_oct(tmp_path / "a.oct", header, {"data/Spectral0.data": COUNTS.tobytes()}, 8)
+    with (
+        pytest.raises(FileError, match=r"Header\.xml: is longer than 64000000 bytes"),
         opened_recording(tmp_path / "a.oct"),
     ):
         pass

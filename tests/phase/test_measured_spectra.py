@@ -159,8 +159,9 @@ def test_values_that_can_t_be_used_are_refused() -> None:
     spectra[1, 4] = np.nan
     with pytest.raises(DatasetError, match="1 values of intensity are not numbers, the first in"):
         even(k, spectra, "s")
-    with pytest.raises(DatasetError, match="is not a positive number"):
-        even(k - 8, np.ones((2, 20)), "s")
+    for first in (-1.0, 0.0):
+        with pytest.raises(DatasetError, match="is not a positive number"):
+            even(k - k[0] + first, np.ones((2, 20)), "s")
 
 
 def test_what_is_not_there_or_not_named_so_is_said(tmp_path: Path) -> None:

@@ -35,3 +35,14 @@ def test_light_on_the_axis_has_one_mirror_class_and_off_it_both() -> None:
         scene = CylinderOnPlane(1.52, 1.33, 1.39, 0.1, 1.2, offset)
         lights = illumination(scene, UniformPupil(), 1.2, 0.7, *at)
         assert len({(lit.polarisation, lit.mirror) for lit in lights}) == number
+
+
+def test_a_tilted_wavefront_is_light_on_a_cylinder_beside_the_axis() -> None:
+    at = UniformPupil(), 1.2, 0.7, np.array(ALONG), np.array([K, 9.0]), WAVES, 20
+    scene = CylinderOnPlane(1.52, 1.33, 1.39, 0.1, 1.2, 0.1)
+    tilted = illumination(scene, *at, wavefront=lambda px, _: -0.3 * 1.2 * px)
+    beside = illumination(scene._replace(offset=0.4), *at)
+    for one, other in zip(tilted, beside, strict=True):
+        assert one[:2] == other[:2]
+        for found, expected in zip(one[2:], other[2:], strict=True):
+            np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())

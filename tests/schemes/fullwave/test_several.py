@@ -25,7 +25,7 @@ from octsim.schemes.fullwave.neighbours import (
 )
 from octsim.schemes.fullwave.operators import Operators
 from octsim.schemes.fullwave.orders import Orders
-from octsim.schemes.fullwave.several import both_signs, in_blocks
+from octsim.schemes.fullwave.several import _incoming, both_signs, in_blocks
 from octsim.schemes.fullwave.shells import scattering_of
 from octsim.schemes.fullwave.solve import Point, field_at, solve
 from octsim.schemes.light import AccuracyStatus
@@ -188,3 +188,30 @@ def test_a_neighbour_that_is_far_away_is_solved_too() -> None:
     light = solve(point, (7.5, 8.5), 1e-2, Operators())
     assert light.status == AccuracyStatus.REACHED
     assert np.isfinite(light.values).all()
+
+
+@pytest.mark.parametrize("strength", [0.3, 0.9, 3.0])
+def test_waves_are_those_of_a_dense_system_however_much_goes_to_and_fro(strength: float) -> None:
+    drawn = np.random.default_rng(5)
+
+    def random(*shape: int) -> NDArray[Any]:
+        return drawn.normal(size=shape) + 1j * drawn.normal(size=shape)
+
+    number, sizes = 2, (3, 5)
+    whole, every = [random(number, 2, 2, size) for size in sizes], 2 * sum(sizes)
+    t, begin = np.zeros((number, every, every), complex), 0
+    for of, size in zip(whole, sizes, strict=True):
+        for to, of_field, order in np.ndindex(2, 2, size):
+            t[:, begin + to * size + order, begin + of_field * size + order] = of[
+                :, to, of_field, order
+            ]
+        begin += 2 * size
+    between, regular = random(number, every, every), random(2, number, every)
+    between *= strength / np.abs(np.linalg.eigvals(t @ between)).max(axis=-1)[:, None, None]
+    found, _ = _incoming(between, whole, regular, 1e-13)
+    for place in range(number):
+        system = np.eye(every) - between[place] @ t[place]
+        expected = np.linalg.solve(system, regular[:, place].T).T
+        np.testing.assert_allclose(
+            found[:, place], expected, rtol=0, atol=1e-10 * np.abs(expected).max()
+        )
