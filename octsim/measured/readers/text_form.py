@@ -134,6 +134,12 @@ def _shape(line: Line, separator: str, point: str) -> _Shape | None:
     return _Shape(cells, lead) if lead == 0 or len(rest) >= FEWEST else None
 
 
+def _is_of_two_cells(first: _Shape, then: _Shape) -> bool:
+    """Whether a line as ``,0`` heads two columns, and is no number of one: the next has no such."""
+    starts = first.cells[0].startswith(","), then.cells[0].startswith(",")
+    return len(first.cells) == 1 and starts == (True, False)
+
+
 def _form(
     path: Path, text: Text, line: Line, after: Line | None, header: list[Line], end: int
 ) -> Form | None:
@@ -145,6 +151,8 @@ def _form(
             first = _shape(line, separator, point)
             then = _shape(after, separator, point) if after is not None else first
             if first is None or then is None or then.lead > max(first.lead, 1):
+                continue
+            if point == "," and _is_of_two_cells(first, then):
                 continue
             count = len(then.cells)
             bare = first.lead == 0 and len(first.cells) == count - 1 >= FEWEST
