@@ -240,7 +240,7 @@ def _is_axis(cell: str) -> bool:
 
 def _cells(line: Line, separator: str, count: int) -> tuple[str, ...]:
     """Return as many headings as there are columns, if they stand in a line; none else."""
-    text = line.text.lstrip("#" if separator == "\t" else " #")
+    text = line.text.lstrip(" #")
     every = (cut_headings(text, one) for one in (separator, *SEPARATORS))
     return tuple(next((cells for cells in every if len(cells) == count), ()))
 
