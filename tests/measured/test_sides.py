@@ -47,6 +47,14 @@ def test_dimensions_are_told(
     assert sides(shape, signs, **asked) == expected
 
 
+@pytest.mark.parametrize("pixels", [512, 1024, 2048, 3648, 4096, 8192])
+def test_a_last_dimension_as_long_as_a_camera_s_line_is_the_samples(pixels: int) -> None:
+    assert sides((9, pixels), Signs()) == (0, 1, {})
+    for others in (pixels - 1, pixels + 1):
+        with pytest.raises(DatasetError, match=f"nothing says which of 9 and {others}"):
+            sides((9, others), Signs())
+
+
 def test_a_long_row_is_of_spectra_one_after_the_other() -> None:
     found = told(np.arange(60.0), Signs(), 20, None, "it")
     assert isinstance(found.source, Folded)

@@ -49,6 +49,10 @@ TABLES: Mapping[str, tuple[str, Seen]] = {
     "wavenumbers": ("k (rad/um),a,b,c\n" + columns(), ("wavenumber", "rad/um", None)),
     "of waves in a cm": ("Wavenumber [1/cm],a,b,c\n" + columns(), ("wavenumber", "1/cm", None)),
     "of numpy": ("# wavelength (nm) a b c\n" + columns(" ", "{:.18e}"), ("wavelength", "nm", None)),
+    "in a note behind a blank": (
+        " # wavelength (nm)\ta\tb\tc\n" + columns("\t"),
+        ("wavelength", "nm", None),
+    ),
     "without headings": (columns(), ("wavelength", "nm", None)),
     "without headings, um": (columns(form="{:.0f}e-3"), ("wavelength", "um", None)),
     "a setting above": ("Camera,Basler\nGain,5,7,9\n" + columns(), ("wavelength", "nm", None)),
@@ -88,6 +92,19 @@ TABLES: Mapping[str, tuple[str, Seen]] = {
     ),
     "rows, the axis named": (
         f"wavelength (nm),{AXIS}\n" + rows("0", "0.1", "0.2"),
+        ("wavelength", "nm", PHASES),
+    ),
+    "columns behind pixels, headed by times alone": (
+        "pixel,,1 ms,3 ms,4 ms\n"
+        + "".join(f"{at},{row}\n" for at, row in enumerate(columns().splitlines())),
+        ("wavelength", "nm", [1, 3, 4]),
+    ),
+    "rows, the axis named, in m": (
+        "wavelength (m)," + ",".join(f"{one}e-9" for one in NM) + "\n" + rows("0", "0.1", "0.2"),
+        ("wavelength", "m", PHASES),
+    ),
+    "rows, the axis named alone": (
+        f"wavelength,{AXIS}\n" + rows("0", "0.1", "0.2"),
         ("wavelength", "nm", PHASES),
     ),
     "rows of pandas": (f",{AXIS}\n" + rows("0", "1", "2"), ("wavelength", "nm", None)),
@@ -141,12 +158,17 @@ def test_what_is_guessed_is_a_warning(kind: str, tmp_path: Path) -> None:
     assert any(line.startswith("warning: ") for line in understood)
 
 
-@pytest.mark.parametrize("kind", ["a unit alone", "headed by times", "rows with names"])
+@pytest.mark.parametrize(
+    ("kind", "said"),
+    [("a unit alone", "has 12 samples by what it is named, but 3 are given"),
+     ("headed by times", "has 12 samples by what it is named, but 3 are given"),
+     ("rows with names", "is 4 x 12, and the axis has 3 samples, as no dimension has")],
+)  # fmt: skip
 def test_rows_and_columns_are_as_many_as_the_samples_that_are_given(
-    kind: str, tmp_path: Path
+    kind: str, said: str, tmp_path: Path
 ) -> None:
     np.testing.assert_array_equal(read(tmp_path / "a", TABLES[kind][0], samples=12)[0], COUNTS)
-    with pytest.raises(DatasetError, match=r"12.* 3 .*give the axis of this spectrometer"):
+    with pytest.raises(DatasetError, match=f"{said}; give the axis of this spectrometer"):
         read(tmp_path / "b", TABLES[kind][0], samples=3)
 
 
@@ -204,6 +226,43 @@ def test_letters_beyond_ascii_are_read_as_they_were_written(encoding: str, tmp_p
         assert said == (encoding == "cp1252")
 
 
+def below(top: str) -> str:
+    """Return columns below a row, as many as it has cells."""
+    wide = np.column_stack((NM, *COUNTS[: top.count(",")]))
+    return f"{top}\n" + "".join(",".join(f"{one:g}" for one in row) + "\n" for row in wide)
+
+
+@pytest.mark.parametrize(
+    ("top", "times"),
+    [(",0,1,2", None), (",1,2", None), (",0", None), (",0.5,0.7", [0.5, 0.7]), (",9 s", [9])],
+)
+def test_numbers_above_columns_are_headings_where_they_count_or_rise(
+    top: str, times: list[float] | None, tmp_path: Path
+) -> None:
+    counts, seen, _ = read(tmp_path / "table", below(top))
+    np.testing.assert_array_equal(counts, COUNTS[: top.count(",")])
+    assert seen == ("wavelength", "nm", times)
+
+
+def test_a_column_of_decimal_commas_may_leave_noughts_out(tmp_path: Path) -> None:
+    text = ",5\n,75\n1,25\n" + "2,5\n" * 9
+    counts, _, _ = read(tmp_path / "table", text)
+    np.testing.assert_array_equal(counts, [[0.5, 0.75, 1.25, *[2.5] * 9]])
+
+
+@pytest.mark.parametrize(
+    ("top", "said"),
+    [(",0.7,0.5", "a cell is missing"), (",5", "a cell is missing"), (",5,5", "a cell is missing"),
+     ("7o9,0.5,0.7", "cell 1 is '7o9', which is no number"),
+     ("-7o9,1,2", "cell 1 is '-7o9', which is no number")],
+)  # fmt: skip
+def test_a_row_that_is_rather_one_of_the_numbers_is_refused(
+    top: str, said: str, tmp_path: Path
+) -> None:
+    with pytest.raises(DatasetError, match=f"row 1: {said}, among others that are; mend it"):
+        read(tmp_path / "table", below(top))
+
+
 def test_how_many_spectra_of_how_many_samples_are_found_by_what_is_said(tmp_path: Path) -> None:
     for text, said in (
         (TABLES["a unit alone"][0], "3 spectra of 12 samples, told by the heading 'nm'"),
@@ -211,6 +270,20 @@ def test_how_many_spectra_of_how_many_samples_are_found_by_what_is_said(tmp_path
         (thor_spectra(), "1 spectrum of 40 samples, told by the header"),
     ):
         assert any(line.startswith(said) for line in read(tmp_path / "table", text)[2])
+
+
+@pytest.mark.parametrize("lead", ["10:00:00", '"10:00:00"'])
+def test_a_time_of_day_may_stand_before_a_single_row(lead: str, tmp_path: Path) -> None:
+    counts, seen, _ = read(tmp_path / "table", f"time,{AXIS}\n" + rows(lead, counts=COUNTS[:1]))
+    np.testing.assert_array_equal(counts, COUNTS[:1])
+    assert seen == ("wavelength", "nm", [36000.0])
+
+
+def test_numbers_are_looked_for_below_10_000_lines_at_most(tmp_path: Path) -> None:
+    counts, _, _ = read(tmp_path / "table", "of ours\n" * 10_000 + columns())
+    np.testing.assert_array_equal(counts, COUNTS)
+    with pytest.raises(DatasetError, match="no rows of numbers within its first 10001 lines"):
+        read(tmp_path / "table", "of ours\n" * 10_001 + columns())
 
 
 @pytest.mark.parametrize(("text", "above"), [(ocean_single(), OCEAN), (thor_spectra(), None)])

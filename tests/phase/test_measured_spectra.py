@@ -164,6 +164,22 @@ def test_values_that_can_t_be_used_are_refused() -> None:
             even(k - k[0] + first, np.ones((2, 20)), "s")
 
 
+@pytest.mark.parametrize(
+    ("shortest", "longest", "said"),
+    [(0.051, 99.0, ""), (0.049, 0.9, "wavelengths from 0.049 to 0.9 um given, not those of a"),
+     (0.65, 101.0, "wavelengths from 0.65 to 101 um given, not those of a spectrometer")],
+)  # fmt: skip
+def test_wavelengths_are_those_of_a_spectrometer_from_50_nm_to_100_um(
+    shortest: float, longest: float, said: str
+) -> None:
+    k = np.linspace(2 * np.pi / longest, 2 * np.pi / shortest, 20)
+    if not said:
+        assert even(k, np.ones((2, 20)), "s").intensity.shape == (2, 20)
+        return
+    with pytest.raises(DatasetError, match=f"^s: {said}"):
+        even(k, np.ones((2, 20)), "s")
+
+
 def test_what_is_not_there_or_not_named_so_is_said(tmp_path: Path) -> None:
     for name in ("none.csv", "none.nc"):
         with pytest.raises(FileError, match="can't be read"):

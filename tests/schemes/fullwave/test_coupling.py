@@ -26,6 +26,19 @@ def test_waves_from_a_perfect_mirror_are_those_of_an_image(waves: int, height: f
     np.testing.assert_allclose(found, expected, rtol=1e-10)
 
 
+def test_the_contour_is_gauss_legendre_s_in_re_beta_plus_tau_on_its_right_half() -> None:
+    path = contour(30, 9, 4.0)
+    place, weight = np.polynomial.legendre.leggauss(30)
+    length = path.angle.real - path.angle.imag
+    end = length[0] / (place[0] + 1)
+    assert end > 1
+    np.testing.assert_allclose(length, end * (place + 1), rtol=1e-11)
+    assert (path.angle.real > 0).all()
+    assert (path.angle.imag < 0).all()
+    # dβ along it, as the length along both axes rises
+    np.testing.assert_allclose(path.weight.real - path.weight.imag, end * weight, rtol=1e-11)
+
+
 @pytest.mark.parametrize("mirror", [0, 1])
 @pytest.mark.parametrize("n_glass", [1.52, 1.2])
 @pytest.mark.parametrize("along", [0.0, 0.4, 1.1])

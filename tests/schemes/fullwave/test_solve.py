@@ -141,6 +141,18 @@ def test_its_error_is_within_what_it_says(accuracy: float) -> None:
     assert np.abs(over_band(light, light.values, k) - exact).max() <= light.error
 
 
+def test_a_table_of_indices_is_met_by_as_many_wavenumbers_as_see_it() -> None:
+    plain = solve(POINT, BAND, 1e-2, Operators())
+    table = POINT._replace(left_out=lambda number: 1.0 if number < 100 else 0.0)
+    light = solve(table, BAND, 1e-2, Operators())
+    assert light.status == plain.status == AccuracyStatus.REACHED
+    assert plain.wavenumber.size < 50
+    assert 100 <= light.wavenumber.size <= 150
+    k = np.linspace(*BAND, 9)
+    off = over_band(light, light.values, k) - over_band(plain, plain.values, k)
+    assert np.abs(off).max() <= plain.error + light.error
+
+
 def test_thin_cylinders_return_light_by_their_area() -> None:
     # Rayleigh: from the same place, twice the diameter scatters four times the field
     fields = []
