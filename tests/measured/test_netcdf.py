@@ -111,3 +111,21 @@ def test_a_file_of_netcdf_3_that_is_cut_short_is_refused(
         path.write_bytes(whole[:size])
         with pytest.raises(FileError, match="cut short"):
             require_whole(path)
+
+
+@pytest.mark.parametrize("kind", ["i1", "i2", "i4", "f4", "f8", "u1", "u2", "u4", "i8", "u8"])
+def test_numbers_of_every_type_of_netcdf_3_are_as_long_as_they_are(
+    kind: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "a.nc"
+    counts = (COUNTS % 100).astype(kind)
+    with netCDF4.Dataset(path, "w", format="NETCDF3_64BIT_DATA") as file:
+        file.createDimension("time", T)
+        file.createDimension("pixel", K)
+        file.createVariable("counts", kind, ("time", "pixel"))[:] = counts
+        file["counts"].bits = np.array([1, 2, 3], kind)
+    with opened_recording(path, samples=K) as found:
+        np.testing.assert_array_equal(found.counts[:], counts)
+    path.write_bytes(path.read_bytes()[:-1])
+    with pytest.raises(FileError, match="netCDF that is cut short, after"):
+        require_whole(path)

@@ -272,6 +272,13 @@ def test_how_many_spectra_of_how_many_samples_are_found_by_what_is_said(tmp_path
         assert any(line.startswith(said) for line in read(tmp_path / "table", text)[2])
 
 
+def test_columns_without_an_axis_have_the_times_that_head_them(tmp_path: Path) -> None:
+    inner = "".join(",".join(f"{one:g}" for one in row) + "\n" for row in COUNTS.T)
+    counts, seen, _ = read(tmp_path / "table", "1 ms,3 ms,4 ms\n" + inner, samples=12)
+    np.testing.assert_array_equal(counts, COUNTS)
+    assert seen == (None, None, [1, 3, 4])
+
+
 @pytest.mark.parametrize("lead", ["10:00:00", '"10:00:00"'])
 def test_a_time_of_day_may_stand_before_a_single_row(lead: str, tmp_path: Path) -> None:
     counts, seen, _ = read(tmp_path / "table", f"time,{AXIS}\n" + rows(lead, counts=COUNTS[:1]))
