@@ -76,6 +76,25 @@ def test_an_expansion_is_by_a_calibration_or_where_more_is_fitted_by_responses()
     assert inputs_of(row, more) == inputs_of(row, one) == ("responses",)
 
 
+def test_an_expansion_is_of_measured_spectra_where_they_are_given() -> None:
+    row, spectra = CATALOG["expansion"], {"measured": {"spectra": "of_ours.csv"}}
+    series = load_config({"expansion": {"series": "of_ours.csv"}})
+    matched = load_config(spectra, {"expansion": {"slope": "match"}})
+    assert inputs_of(row, load_config(spectra)) == ("calibration", "measured")
+    assert inputs_of(row, series) == ("calibration",)
+    assert inputs_of(row, matched) == ("calibration", "measured", "match")
+
+
+def test_where_a_key_that_decides_is_varied_what_each_of_its_values_reads_counts() -> None:
+    plain = [load_config(GIVEN, {"tracing": {"scheme": one}}) for one in ("vogel", "paths")]
+    varied = gridded({"tracing.scheme": ["vogel", "paths"]}, GIVEN)
+    for keys_of in (keys_read, keys.keys_behind):
+        each = [set(keys_of("detections", one)) for one in plain]
+        assert set(keys_of("detections", varied)) == each[0] | each[1]
+        assert "tracing.rays" in each[0] - each[1]
+        assert "tracing.accuracy" in each[1] - each[0]
+
+
 @pytest.mark.parametrize(
     ("edit", "of_detections", "of_slopes"),
     [
