@@ -9,6 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from octsim.datasets.code import figures_code
+from octsim.datasets.stage import Figure
+
 ROOT = Path(__file__).parents[2]
 KERNELS = (
     "octsim.tracing.kernel", "octsim.schemes.field_sum", "octsim.schemes.paths.integrate",
@@ -110,3 +113,16 @@ def test_an_edit_of_what_writes_files_makes_all_anew(changed: Callable[..., set[
     found = changed("datasets/writer.py")
     assert {"vogel focus_scan", "vogel phase_slope", "paths spectra", "vogel calibration"} <= found
     assert not set(KERNELS) & found
+
+
+def test_figures_follow_from_what_draws_them_and_from_their_captions() -> None:
+    def drawn(*modules: str, caption: str = "Phases.") -> str:
+        return figures_code(
+            *(Figure("a", f"octsim.figures.{module}:draw", caption) for module in modules)
+        )
+
+    one = drawn("focus_scan")
+    assert len({one, drawn("focus_law"), drawn("focus_scan", "focus_law")}) == 3
+    code, caption = drawn("focus_scan", caption="Slopes.").split()
+    assert code == one.split()[0]
+    assert caption != one.split()[1]
