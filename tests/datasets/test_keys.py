@@ -39,6 +39,16 @@ def test_a_stage_has_the_axes_of_the_keys_it_depends_on(key: str, stages: set[st
     assert {stage for stage in stages_of(config) if stage_axes(stage, config)} == stages
 
 
+def test_stages_whose_datasets_have_the_same_axes_are_together() -> None:
+    config = gridded(
+        {"scene.gap": ["1 nm", "5 nm"], "processing.window": ["hann", "boxcar"]}, GIVEN
+    )
+    asked = ("detections", "fourier", "spectra", "phase_slope")
+    found = keys.with_the_same_axes(asked, config)
+    assert found == [["detections", "spectra"], ["fourier", "phase_slope"]]
+    assert keys.with_the_same_axes(asked, load_config(GIVEN)) == [list(asked)]
+
+
 def made_anew(before: Config, after: Config) -> set[str]:
     """Return the jobs of a run that an edit makes anew, where all was made before it."""
 

@@ -72,6 +72,8 @@ def test_a_long_row_is_of_spectra_one_after_the_other() -> None:
      ((41,), Signs(axis=41), {"samples": 40}, "axis of 41 samples, but 40 are given"),
      ((1, 3, 40), Signs(), {"samples": 40}, "1 x 3 x 40; give measured.x, from 0 to 2"),
      ((9, 40), Signs(), {"samples": 40, "x": 0}, "no third dimension"),
+     ((1, 40), Signs(), {"x": 0}, "no third dimension"),
+     ((40,), Signs(), {"x": 0}, "no third dimension"),
      ((9, 1, 40), Signs(), {"samples": 40, "x": 1}, "no third dimension")],
 )  # fmt: skip
 def test_what_is_not_told_is_refused(
