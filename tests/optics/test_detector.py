@@ -45,6 +45,17 @@ def test_the_margin_at_the_rim_changes_sign_where_rays_are_no_longer_accepted() 
         assert (rim_margin(DETECTOR, 0.0, 0.0, vx, vy, vz) > 0) == (part < 1)
 
 
+def test_the_margin_at_the_rim_is_that_of_where_a_ray_meets_the_objective() -> None:
+    x, y, vx, vy = 1.5, -2.5, 0.31, -0.42
+    vz = math.sqrt(1 - vx**2 - vy**2)
+    # on to the objective: it returns downwards, and the objective's plane lies below the focus
+    at_x, at_y = (at + DETECTOR.focus_distance * v / vz for at, v in ((x, vx), (y, vy)))
+    expected = vz**2 * (1 - (at_x**2 + at_y**2) / DETECTOR.objective_radius**2)
+    for sign in (1, -1):
+        given = sign * x * vz, sign * y * vz, sign * vx, sign * vy
+        assert rim_margin(DETECTOR, *given, vz) == pytest.approx(expected, rel=1e-9)
+
+
 def test_arrivals_are_within_the_detector_and_the_objective() -> None:
     beam = vogel_beam(400, DETECTOR.objective_radius, DETECTOR.focus_distance)
     found = arrivals(scene_of(CONFIG, 1.4), beam, DETECTOR, 0.5)

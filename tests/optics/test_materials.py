@@ -5,9 +5,22 @@ from math import isnan, pi
 import numpy as np
 import pytest
 
-from octsim.optics.materials import Cauchy, Constant, Material, Sellmeier, Table, group_index
+from octsim.optics.materials import (
+    Cauchy,
+    Constant,
+    Material,
+    Sellmeier,
+    Table,
+    group_index,
+    rows_within,
+)
 from octsim.optics.shipped_materials import SHIPPED
-from octsim.optics.two_beams import aliasing_step, ideal_spectra, indices, predicted_phase_slope
+from octsim.optics.two_beams import (
+    aliasing_step,
+    ideal_spectra,
+    indices,
+    predicted_phase_slope,
+)
 
 WATER = SHIPPED["water"].material
 BAND = np.linspace(2 * pi / 0.9, 2 * pi / 0.65, 101)
@@ -67,7 +80,11 @@ def test_slope_and_group_index_are_the_derivatives(name: str) -> None:
 def test_a_constant_is_exactly_one_number() -> None:
     constant = Constant(1.39)
     assert (constant.index(7.0), group_index(constant, 7.0)) == (1.39, 1.39)
-    assert [one.dispersive for one in (constant, Cauchy((1.4,)), WATER)] == [False, True, True]
+    assert [one.dispersive for one in (constant, Cauchy((1.4,)), WATER)] == [
+        False,
+        True,
+        True,
+    ]
     assert constant == Constant(1.39)
     assert len({constant, Constant(1.39), table(0.05), table(0.05)}) == 2
 
@@ -127,3 +144,15 @@ def test_ideal_spectra_have_the_index_of_each_wavenumber() -> None:
     assert n == pytest.approx([neuron.index(k).real for k in BAND.tolist()])
     expected = np.cos(2 * diameter[:, np.newaxis] * n * BAND)
     np.testing.assert_allclose(ideal_spectra(neuron, diameter, BAND), expected, atol=1e-12)
+
+
+def test_rows_of_a_table_count_between_two_wavenumbers_and_not_at_their_ends() -> None:
+    rows = 0.6, 0.7, 0.8, 0.9
+    some = Table(rows, (1.3,) * 4)
+    between = [2 * pi / one for one in (0.85, 0.75, 0.65)]
+    assert rows_within(some, between[0], between[2]) == 2
+    assert rows_within(some, between[1], between[2]) == 1
+    assert rows_within(some, 2 * pi / 0.8, between[2]) == 1
+    assert rows_within(some, between[0], 2 * pi / 0.7) == 1
+    assert rows_within(some, 1.0, 20.0) == 4
+    assert rows_within(WATER, 1.0, 20.0) == rows_within(Constant(1.3), 1.0, 20.0) == 0
