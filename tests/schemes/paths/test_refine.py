@@ -106,8 +106,9 @@ def test_a_survey_that_all_take_goes_on_as_one_tile_with_the_orders_of_its_path(
     assert found.bound == pytest.approx(AMPLITUDE, rel=0.1)
 
 
-def test_a_survey_that_some_take_goes_on_in_blocks_that_make_it_up() -> None:
-    n, m = 12, 6
+@pytest.mark.parametrize("n", [10, 12])
+def test_a_survey_that_some_take_goes_on_in_blocks_that_make_it_up(n: int) -> None:
+    m = 6
     space = space_of(without=(3, 40))
     work = OpenTile(WHOLE, n, m, LOOK, 1.0, 0.1, math.inf)
     assert look_closely(POINT, work, 0.0, goal_of(1e-6, 1.0), False, space) == 0
