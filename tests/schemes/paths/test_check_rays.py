@@ -102,3 +102,25 @@ def test_polynomials_are_off_by_a_tenth_of_what_they_put_a_falloff_wrong(
     found = weight_error(checks_of(*rays), cut, room(TILE_LINE))
     expected = share * ((1.05 + off) ** 2 - 1.05**2) / RADIUS**2
     assert found == pytest.approx(0.1 * expected, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("steep", "there"), [(5.8, False), (5.45, False), (6.5, True), (4.0, True)]
+)
+def test_near_the_edge_of_a_falloff_that_jumps_there_polynomials_are_held_to_nothing(
+    steep: float, there: bool
+) -> None:
+    # X = steep x and Y = 2 y: within a tenth of R_det² of the edge, or farther from it
+    returns = room(MAP)
+    for name in ("x", "y", "cos", "inside"):
+        getattr(returns, name)[:] = 0.0
+    returns.x[0, 0], returns.x[1, 0] = steep * 0.2, steep * 0.16
+    returns.y[0, 0], returns.cos[0, 0], returns.inside[0, 0] = 2.0, 1.0, 0.5
+    squared = ((steep * 0.3) ** 2 + 1) / RADIUS**2
+    assert there == (abs(squared - 1) > 0.1)
+    checks = checks_of((0.3, 0.25, 0.9, 1.0))
+    for falloff, held, share in ((Parabola(), True, 1.0), (LESS, there, 0.5)):
+        cut = Cut(returns, 3, 3, TILE, False, RADIUS, falloff, tables_of(False).bernstein)
+        off = abs(0.9 - (1 - share * squared if squared < 1 else 0.0))
+        found = weight_error(checks, cut, room(TILE_LINE))
+        assert found == pytest.approx(0.1 * off if held else 0.0, abs=1e-12)
