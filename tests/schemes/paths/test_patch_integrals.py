@@ -12,7 +12,14 @@ from scipy import integrate
 from octsim.base.records import room
 from octsim.schemes.paths.aperture_tiles import Tile
 from octsim.schemes.paths.falloffs import Parabola
-from octsim.schemes.paths.line_crossings import MAP, TILE_LINE, Cut, cross, cross_edge
+from octsim.schemes.paths.line_crossings import (
+    MAP,
+    TILE_LINE,
+    Cut,
+    cross,
+    cross_edge,
+    crossing_kind,
+)
 from octsim.schemes.paths.patch_integrals import moments
 from octsim.schemes.paths.workspace import tables_of
 
@@ -125,6 +132,21 @@ def test_a_line_crosses_a_disk_where_pythagoras_has_it(v_max: float) -> None:
         assert cross(cut, xi, line) == 2
         assert line.cuts[:2] == pytest.approx([0.0, min(y, math.sqrt(v_max))], abs=1e-8)
     assert cross(cut, 0.75, line) == 0
+
+
+@pytest.mark.parametrize(
+    ("v_min", "v_max", "kind"),
+    [(0.0, 1.0, (2, True, False)), (0.04, 0.25, (2, True, True)), (0.5, 0.9, (0, False, False))],
+)
+def test_a_line_is_known_by_how_often_it_crosses_a_patch_and_whether_at_its_ends(
+    v_min: float, v_max: float, kind: tuple[int, bool, bool]
+) -> None:
+    steep = np.array([[RADIUS / 0.7]])
+    cut = cut_of(Tile(0.0, 1.0, v_min, v_max), True, 4, 3, steep, steep)
+    line = room(TILE_LINE)
+    assert crossing_kind(cut, 0.3, line) == kind
+    # whatever the line before it did
+    assert crossing_kind(cut, 0.8, line) == (0, False, False)
 
 
 def test_the_edge_of_a_patch_along_a_side_of_a_tile_is_where_its_disk_ends() -> None:
