@@ -244,15 +244,18 @@ def test_numbers_above_columns_are_headings_where_they_count_or_rise(
     assert seen == ("wavelength", "nm", times)
 
 
-def test_a_column_of_decimal_commas_may_leave_noughts_out(tmp_path: Path) -> None:
-    text = ",5\n,75\n1,25\n" + "2,5\n" * 9
-    counts, _, _ = read(tmp_path / "table", text)
-    np.testing.assert_array_equal(counts, [[0.5, 0.75, 1.25, *[2.5] * 9]])
+@pytest.mark.parametrize(
+    "first", [[",5", ",75"], [",5", "1,25"], [",1", "2,5", ",7"], [",0", ",5"]]
+)
+def test_a_column_of_decimal_commas_may_leave_noughts_out(first: list[str], tmp_path: Path) -> None:
+    rows = [*first, *["2,5"] * 10]
+    counts, _, _ = read(tmp_path / "table", "".join(f"{row}\n" for row in rows))
+    np.testing.assert_array_equal(counts, [[float(row.replace(",", ".")) for row in rows]])
 
 
 @pytest.mark.parametrize(
     ("top", "said"),
-    [(",0.7,0.5", "a cell is missing"), (",5", "a cell is missing"), (",5,5", "a cell is missing"),
+    [(",0.7,0.5", "a cell is missing"), (",5,5", "a cell is missing"),
      ("7o9,0.5,0.7", "cell 1 is '7o9', which is no number"),
      ("-7o9,1,2", "cell 1 is '-7o9', which is no number")],
 )  # fmt: skip

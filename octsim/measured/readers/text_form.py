@@ -134,10 +134,8 @@ def _shape(line: Line, separator: str, point: str) -> _Shape | None:
     return _Shape(cells, lead) if lead == 0 or len(rest) >= FEWEST else None
 
 
-def _is_of_two_cells(first: _Shape, then: _Shape) -> bool:
-    """Whether a line as ``,0`` heads two columns, and is no number of one: the next has no such."""
-    starts = first.cells[0].startswith(","), then.cells[0].startswith(",")
-    return len(first.cells) == 1 and starts == (True, False)
+_BARE_SERIES = [",0"]
+"""Headings of an index and a series without a name, as pandas writes them; elsewhere 0 is 0."""
 
 
 def _form(
@@ -152,7 +150,7 @@ def _form(
             then = _shape(after, separator, point) if after is not None else first
             if first is None or then is None or then.lead > max(first.lead, 1):
                 continue
-            if point == "," and _is_of_two_cells(first, then):
+            if first.cells == _BARE_SERIES and then.cells[0][:1] != ",":
                 continue
             count = len(then.cells)
             bare = first.lead == 0 and len(first.cells) == count - 1 >= FEWEST
