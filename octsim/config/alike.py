@@ -1,10 +1,8 @@
 """Combinations of a grid that take as much as each other, counted together."""
 
-import functools
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator
-from typing import TypeAlias
+from collections.abc import Iterator
 
 from pydantic import BaseModel
 
@@ -19,12 +17,8 @@ _COSTS_NOTHING = (
 """Keys that no cost follows from, nor from parts of them."""
 
 
-Kinds: TypeAlias = tuple[tuple[Config, int], ...]
-"""A config of each kind of combinations, and how many of it there are."""
-
-
-def alike(config: Config, *keys: str) -> Kinds:
-    """Return a config of each kind of combinations that cost the same, and how many there are.
+def alike(config: Config, *keys: str) -> Iterator[tuple[Config, int]]:
+    """Yield a config of each kind of combinations that cost the same, and how many there are.
 
     Parameters
     ----------
@@ -33,19 +27,6 @@ def alike(config: Config, *keys: str) -> Kinds:
     *keys : str
         Dotted keys: combinations of what varies these, or parts of them.
     """
-    return _kinds_of(config)(tuple(key for axis in axes(config, *keys) for key in axis.keys))
-
-
-@remembered
-def _kinds_of(config: Config) -> Callable[[tuple[str, ...]], Kinds]:
-    """Return what gives the kinds of combinations of some varied keys, which are gone through once.
-
-    Most stages have the same.
-    """
-    return functools.cache(lambda varied: tuple(_found(config, varied or _NO_KEY)))
-
-
-def _found(config: Config, keys: tuple[str, ...]) -> Iterator[tuple[Config, int]]:
     kinds: dict[tuple[str, ...], int] = {}
     firsts: dict[tuple[str, ...], Config] = {}
     for one, count in _of_costs(config, keys):
@@ -72,10 +53,6 @@ def _of_costs(config: Config, keys: tuple[str, ...]) -> Iterator[tuple[Config, i
         counts = Counter(row_text(tuple(row[place] for place in places)) for row in axis.rows)
     for at in combinations(reduced, *keys):
         yield at.config, counts.get(row_text(tuple(at.values.values())), 1)
-
-
-_NO_KEY = ("run",)
-"""What no grid varies."""
 
 
 def _costs_nothing(key: str) -> bool:

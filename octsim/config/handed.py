@@ -22,11 +22,12 @@ def keep_beside_runs() -> TemporaryDirectory[str] | None:
         None where nothing can be written here, and nothing is kept.
     """
     try:
-        Path(".snakemake").mkdir(exist_ok=True)
-        kept = TemporaryDirectory(prefix="looked-", dir=".snakemake")
+        folder = Path(".snakemake").absolute()
+        folder.mkdir(exist_ok=True)
+        kept = TemporaryDirectory(prefix="looked-", dir=folder)
     except OSError:
         return None
-    os.environ[FOLDER] = str(Path(kept.name).absolute())
+    os.environ[FOLDER] = kept.name
     return kept
 
 

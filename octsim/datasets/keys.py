@@ -45,9 +45,11 @@ def _kinds(config: Config) -> tuple[Config, ...]:
 
 
 def _kind(key: str, value: Any) -> Any:
-    """Return what of a value decides which other keys are read."""
+    """Return what of a value decides which other keys are read: not which number or line it is."""
     if overlap(key, "scene.refractive_index") and isinstance(value, int | float):
         return "a number"
+    if overlap(key, "sweep.focus") and value != "law":
+        return "a line"
     return value
 
 

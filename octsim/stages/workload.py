@@ -3,7 +3,6 @@
 import math
 from typing import NamedTuple
 
-from octsim.base.remembered import remembered
 from octsim.config.alike import alike
 from octsim.config.models import Config
 from octsim.config.scheme import point_cost
@@ -38,12 +37,9 @@ class Work(NamedTuple):
     """How many are in a block."""
 
 
-_cost = remembered(point_cost)
-
-
 def work_of(stage: str, config: Config) -> Work:
     """Return what a stage that traces has to do at a plain config."""
-    points, cost = CATALOG[stage].points, _cost(config)
+    points, cost = CATALOG[stage].points, point_cost(config)
     assert points is not None
     count, each = points(config)
     together = points_per_block(each * cost.size, each * cost.seconds)

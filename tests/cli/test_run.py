@@ -111,6 +111,19 @@ def test_a_grid_that_was_looked_at_lies_where_every_node_of_the_run_sees_it(
     assert "OCTSIM_LOOKED" not in os.environ
 
 
+def test_where_nothing_can_be_kept_of_a_grid_its_run_begins_all_the_same(
+    monkeypatch: pytest.MonkeyPatch, folder: Path
+) -> None:
+    (folder / ".snakemake").write_text("no folder")
+    monkeypatch.delenv("OCTSIM_LOOKED", raising=False)
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr(run, "stops_at_signals", lambda _: None)
+    monkeypatch.setattr(run._Running, "ended", lambda _: 0)
+    assert command.main(["run", "mine.yaml"]) == 0
+    assert "OCTSIM_LOOKED" not in os.environ
+    assert (folder / ".snakemake").read_text() == "no folder"
+
+
 def test_a_wheel_in_an_empty_folder_makes_a_run(tmp_path: Path) -> None:
     build = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "--quiet"]
     subprocess.run([*build, "--wheel-dir", str(tmp_path), str(ROOT)], check=True)

@@ -149,3 +149,17 @@ def test_of_many_indices_the_keys_are_found_once_and_one_that_disperses_counts(
     assert len(asked) == few
     assert "spectrum" not in plain
     assert "spectrum" in behind(1.36, {"cauchy": [1.35, 0.003]})
+
+
+def test_of_many_foci_that_are_given_the_keys_are_found_once_and_a_law_counts() -> None:
+    lines = [{"slope": 0.58, "intercept": f"{60 + number} nm"} for number in range(20)]
+
+    def behind(*foci: object) -> set[str]:
+        indices = [1.36 + number / 1000 for number in range(len(foci))]
+        grid = {"combine": "zip", "sweep.focus": [*foci], "scene.refractive_index.neuron": indices}
+        config = load_config({"grid": grid})
+        assert len(keys._kinds(config)) == len({one == "law" for one in foci})
+        return set(keys.keys_behind("detections", config))
+
+    assert behind(*lines) == behind(lines[0]) < behind("law")
+    assert behind("law", *lines) == behind("law")
