@@ -107,10 +107,20 @@ def _try(left: Sequence[Change], noticed: dict[str, str], asked: argparse.Namesp
 
 
 def _try_compiled(left: Sequence[Change], noticed: dict[str, str], jobs: int) -> None:
-    """Try changes as they are when compiled, by the test that is named for each."""
+    """Try changes as they are when compiled, by the test that is named for each and else passes."""
     load(compiled=True)
     named = {name: why.removeprefix(COMPILED) for name, why in reasons(COMPILED).items()}
-    trials = [Trial(one, (named[one.name],)) for one in left if one.name in named]
+    tests = {one: named[one.name] for one in left if one.name in named}
+    passing: set[str] = set()
+
+    def ended(done: Trial, how: Ended) -> None:
+        if how.seconds and not any(map(isinf, how.seconds.values())):
+            passing.update(done.files)
+        else:
+            print(f"{done.files[0]}: does not pass without a change", flush=True)
+
+    run(ROOT, [Trial(None, (test,)) for test in set(tests.values())], _COMPILED, jobs, ended)
+    trials = [Trial(one, (test,)) for one, test in tests.items() if test in passing]
     run(ROOT, trials, _COMPILED, jobs, _Verdicts(len(trials), noticed).say)
 
 
@@ -144,7 +154,8 @@ def _timed(files: Iterable[str], asked: argparse.Namespace) -> dict[str, dict[st
 
     It is kept for the code that it is of.
     """
-    code = _digest(*ROOT.glob("octsim/**/*.py"), *ROOT.glob("tests/*.py"))
+    shared = *ROOT.glob("tests/*.py"), *ROOT.glob("tests/**/conftest.py")
+    code = _digest(*ROOT.glob("octsim/**/*.py"), *shared)
     names = {file: f"{file} {code} {_digest(ROOT / file)} {asked.longest}" for file in files}
     kept: dict[str, dict[str, float]] = _read(KEPT / "tests.json")
     known = {file: kept[name] for file, name in names.items() if name in kept}
