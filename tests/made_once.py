@@ -1,6 +1,7 @@
 """What tests of several workers read, made by one of them."""
 
 import pickle
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
@@ -35,8 +36,10 @@ class Once:
         kept = self._folder / f"{name}.pickle"
         with FileLock(kept.with_suffix(".lock")):
             if not kept.exists():
-                folder = self._folder / name
-                folder.mkdir(exist_ok=True)
-                kept.write_bytes(pickle.dumps(make(folder)))
+                folder, partial = self._folder / name, kept.with_suffix(".partial")
+                shutil.rmtree(folder, ignore_errors=True)  # what one that failed has left
+                folder.mkdir()
+                partial.write_bytes(pickle.dumps(make(folder)))
+                partial.replace(kept)
             found: Made = pickle.loads(kept.read_bytes())
         return found

@@ -15,12 +15,7 @@ from octsim.optics.materials import (
     rows_within,
 )
 from octsim.optics.shipped_materials import SHIPPED
-from octsim.optics.two_beams import (
-    aliasing_step,
-    ideal_spectra,
-    indices,
-    predicted_phase_slope,
-)
+from octsim.optics.two_beams import aliasing_step, ideal_spectra, indices, predicted_phase_slope
 
 WATER = SHIPPED["water"].material
 BAND = np.linspace(2 * pi / 0.9, 2 * pi / 0.65, 101)
@@ -80,11 +75,7 @@ def test_slope_and_group_index_are_the_derivatives(name: str) -> None:
 def test_a_constant_is_exactly_one_number() -> None:
     constant = Constant(1.39)
     assert (constant.index(7.0), group_index(constant, 7.0)) == (1.39, 1.39)
-    assert [one.dispersive for one in (constant, Cauchy((1.4,)), WATER)] == [
-        False,
-        True,
-        True,
-    ]
+    assert [one.dispersive for one in (constant, Cauchy((1.4,)), WATER)] == [False, True, True]
     assert constant == Constant(1.39)
     assert len({constant, Constant(1.39), table(0.05), table(0.05)}) == 2
 

@@ -36,11 +36,7 @@ def point_of(symmetric: bool) -> Point:
 def returning(x: float, y: float, amplitude: float = 0.1, length: float = 1.0) -> Workspace:
     """Return a workspace whose N x M rays all return at a place (µm), straight down."""
     space = room_for_point()
-    space.bundle.followed[:], space.bundle.cos[:], space.bundle.inside[:] = (
-        True,
-        1.0,
-        0.5,
-    )
+    space.bundle.followed[:], space.bundle.cos[:], space.bundle.inside[:] = (True, 1.0, 0.5)
     space.bundle.x[:], space.bundle.y[:] = x, y
     space.bundle.amplitude[:], space.bundle.optical_path_length[:] = amplitude, length
     space.checks.weight[:] = -1.0
@@ -65,10 +61,7 @@ def test_nodes_are_aimed_from_their_places_on_the_aperture(symmetric: bool) -> N
     v, xi = y * y, x / np.sqrt(1 - y * y)
     s = xi * xi if symmetric else xi
     # towards the focus, from where they are
-    for found, low, high in (
-        (s.reshape(N, M), 0.2, 0.25),
-        (v.reshape(N, M), 0.1, 0.12),
-    ):
+    for found, low, high in ((s.reshape(N, M), 0.2, 0.25), (v.reshape(N, M), 0.1, 0.12)):
         assert np.abs(found).min() == pytest.approx(low, rel=1e-6)
         assert np.abs(found).max() == pytest.approx(high, rel=1e-6)
     assert (np.ptp(s.reshape(N, M), axis=1) < 1e-12).all()
@@ -76,9 +69,7 @@ def test_nodes_are_aimed_from_their_places_on_the_aperture(symmetric: bool) -> N
 
 
 @pytest.mark.parametrize("symmetric", [True, False])
-def test_trapezoids_weigh_a_tile_s_nodes_by_the_aperture_about_them(
-    symmetric: bool,
-) -> None:
+def test_trapezoids_weigh_a_tile_s_nodes_by_the_aperture_about_them(symmetric: bool) -> None:
     place = 0.6 * DETECTOR.radius
     space = returning(place, 0.0)
     size, error = weigh_crudely(point_of(symmetric), TILE, N, M, LOOK, space)
@@ -95,18 +86,12 @@ def test_nodes_that_return_beside_the_detector_or_take_no_path_weigh_nothing() -
     space.bundle.followed[1], space.bundle.inside[2] = False, -0.1
     space.bundle.x[4] = 1.01 * DETECTOR.radius
     weigh_crudely(point_of(True), TILE, N, M, LOOK, space)
-    assert np.flatnonzero(np.array(space.weight[:N, :M]).ravel() == 0).tolist() == [
-        1,
-        2,
-        4,
-    ]
+    assert np.flatnonzero(np.array(space.weight[:N, :M]).ravel() == 0).tolist() == [1, 2, 4]
     assert space.bundle.amplitude[1] == space.bundle.amplitude[2] == 0
 
 
 @pytest.mark.parametrize("symmetric", [True, False])
-def test_a_fitted_tile_weighs_its_nodes_by_the_falloff_of_all_of_it(
-    symmetric: bool,
-) -> None:
+def test_a_fitted_tile_weighs_its_nodes_by_the_falloff_of_all_of_it(symmetric: bool) -> None:
     point, along = point_of(symmetric), 0.5 * DETECTOR.radius
     space = returning(0.0, along)
     tables = point.tables

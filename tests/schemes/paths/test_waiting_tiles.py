@@ -36,9 +36,7 @@ def test_of_equal_fields_the_tile_that_came_last_is_taken_first() -> None:
 
 
 @pytest.mark.parametrize("symmetric", [True, False])
-def test_halves_are_cut_across_the_longer_side_and_make_up_the_tile(
-    symmetric: bool,
-) -> None:
+def test_halves_are_cut_across_the_longer_side_and_make_up_the_tile(symmetric: bool) -> None:
     waiting = room_for_waiting()
     push_halves(waiting, WIDE, symmetric)
     parts = [pop_strongest(waiting) for _ in range(2)]

@@ -21,9 +21,7 @@ def test_nodes_to_look_with_are_evenly_spaced_in_the_coordinate_that_is_squared(
 
 
 @pytest.mark.parametrize("n", [2, 5, HIGHEST])
-def test_transforms_turn_values_at_the_nodes_into_chebyshev_s_coefficients(
-    n: int,
-) -> None:
+def test_transforms_turn_values_at_the_nodes_into_chebyshev_s_coefficients(n: int) -> None:
     tables = tables_of(True)
     coefficients = 0.5 ** np.arange(n)
     for nodes, transforms in (
