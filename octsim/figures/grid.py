@@ -76,9 +76,11 @@ def _amiss(slopes: xr.Dataset, order: list[str]) -> NDArray[np.bool_]:
     """Return at which combinations the slope is doubtful, or not known, at some diameters."""
     if "fringe_status" not in slopes:  # files of 0.1.0 don't have it
         return np.zeros([slopes.sizes[dim] for dim in order], bool)
-    status = slopes["fringe_status"]
-    some = status.copy(data=doubtful(status)).any("diameter")
-    return np.asarray(some.broadcast_like(slopes["mean_phase_slope"]).transpose(*order).values)
+    status, mean = slopes["fringe_status"], slopes["mean_phase_slope"]
+    # of diameters, or of their numbers where the grid varies how many there are
+    over = [dim for dim in status.dims if dim not in mean.dims]
+    some = status.copy(data=doubtful(status)).any(over)
+    return np.asarray(some.broadcast_like(mean).transpose(*order).values)
 
 
 def _numeric(slopes: xr.Dataset) -> set[str]:
