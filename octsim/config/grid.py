@@ -62,11 +62,7 @@ def axes(config: Config, *keys: str) -> tuple[Axis, ...]:
     *keys : str
         Dotted keys: only what varies these, or parts of them, counts. Without any, all does.
     """
-    varied = {
-        key: tuple(values)
-        for key, values in config.grid.varied.items()
-        if not keys or bears_on(key, *keys)
-    }
+    varied = {key: tuple(config.grid.varied[key]) for key in varied_keys(config, *keys)}
     if config.grid.combine == "product":
         return tuple(
             Axis((key,), tuple((value,) for value in values)) for key, values in varied.items()
@@ -76,6 +72,11 @@ def axes(config: Config, *keys: str) -> tuple[Axis, ...]:
     # of rows that only differ in what does not count, one is enough
     rows = {row_text(row): row for row in zip(*varied.values(), strict=True)}
     return (Axis(tuple(varied), tuple(rows.values()), zipped=True),)
+
+
+def varied_keys(config: Config, *keys: str) -> tuple[str, ...]:
+    """Return the keys that the grid's axes have, as far as it varies some keys (`axes`)."""
+    return tuple(key for key in config.grid.varied if not keys or bears_on(key, *keys))
 
 
 def row_text(row: tuple[Any, ...]) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 from octsim.base.remembered import remembered
 from octsim.config.derive import by_light_paths, overlap, parts_of
 from octsim.config.following import FOLLOWING, follows
-from octsim.config.grid import Axis, axes, combinations, row_text
+from octsim.config.grid import Axis, axes, combinations, row_text, varied_keys
 from octsim.config.models import Config, Grid
 from octsim.config.scheme import light_keys, scheme_of
 from octsim.datasets.catalog import CATALOG, STAGES, jobs
@@ -93,8 +93,8 @@ def with_the_same_axes(stages: Iterable[str], config: Config) -> list[list[str]]
     """Return stages together whose datasets have the same axes of the grid, as most have."""
     together: dict[tuple[str, ...], list[str]] = {}
     for stage in stages:
-        varied = (key for axis in stage_axes(stage, config) for key in axis.keys)
-        together.setdefault(tuple(varied), []).append(stage)
+        varied = varied_keys(config, *keys_behind(stage, config))
+        together.setdefault(varied, []).append(stage)
     return list(together.values())
 
 
