@@ -126,10 +126,10 @@ class Run:
         with suppress(OSError):
             about = Path("/proc", str(process))
             words = (about / "cmdline").read_bytes().split(b"\0")[:-1]
-            if words == [os.fsencode(one) for one in self._command]:
-                for line in (about / "status").read_text().splitlines():
-                    if line.startswith("SigCgt:"):
-                        return bool(int(line.split()[1], 16) >> (number - 1) & 1)
+            lines = (line.split() for line in (about / "status").read_text().splitlines())
+            caught = {name: values for name, *values in lines}["SigCgt:"]
+            is_command = words == [os.fsencode(one) for one in self._command]
+            return is_command and bool(int(caught[0], 16) >> (number - 1) & 1)
         return False
 
     def share_cache(self, folder: Path) -> None:

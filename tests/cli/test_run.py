@@ -5,6 +5,7 @@ import subprocess
 import sys
 import venv
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -31,6 +32,15 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "mine.yaml").write_text(yaml.safe_dump(OVERLAY), encoding="utf-8")
     (tmp_path / "wrong.yaml").write_text("scene: {gap: 5}\n", encoding="utf-8")
     return tmp_path
+
+
+def run_by(
+    monkeypatch: pytest.MonkeyPatch, folder: Path, ended: Callable[[run._Running], int]
+) -> None:
+    """Have the command work in a folder, and something else than snakemake make its run."""
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr(run, "stops_at_signals", lambda _: None)
+    monkeypatch.setattr(run._Running, "ended", ended)
 
 
 @pytest.mark.parametrize(
@@ -78,9 +88,7 @@ def test_words_stand_on_both_sides_of_options_and_flags_are_handed_on(
         given.append(list(running._command))
         return 0
 
-    monkeypatch.chdir(folder)
-    monkeypatch.setattr(run, "stops_at_signals", lambda _: None)
-    monkeypatch.setattr(run._Running, "ended", ended)
+    run_by(monkeypatch, folder, ended)
     words = ["run", "mine.yaml", "--cores", "3", "calibration", "fourier", "--", "--dry-run", "-q"]
     assert command.main(words) == 0
     (line,) = given
@@ -100,9 +108,7 @@ def test_a_grid_that_was_looked_at_lies_where_every_node_of_the_run_sees_it(
 
     (folder / "grid.yaml").write_text(yaml.safe_dump(GRID), encoding="utf-8")
     monkeypatch.delenv("OCTSIM_LOOKED", raising=False)
-    monkeypatch.chdir(folder)
-    monkeypatch.setattr(run, "stops_at_signals", lambda _: None)
-    monkeypatch.setattr(run._Running, "ended", ended)
+    run_by(monkeypatch, folder, ended)
     assert command.main(["run", "grid.yaml"]) == 0
     (found,) = seen
     assert found.parents[1] == folder / ".snakemake"
@@ -116,9 +122,7 @@ def test_where_nothing_can_be_kept_of_a_grid_its_run_begins_all_the_same(
 ) -> None:
     (folder / ".snakemake").write_text("no folder")
     monkeypatch.delenv("OCTSIM_LOOKED", raising=False)
-    monkeypatch.chdir(folder)
-    monkeypatch.setattr(run, "stops_at_signals", lambda _: None)
-    monkeypatch.setattr(run._Running, "ended", lambda _: 0)
+    run_by(monkeypatch, folder, lambda _: 0)
     assert command.main(["run", "mine.yaml"]) == 0
     assert "OCTSIM_LOOKED" not in os.environ
     assert (folder / ".snakemake").read_text() == "no folder"

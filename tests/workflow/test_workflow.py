@@ -226,10 +226,10 @@ def test_a_key_that_stands_twice_is_refused(tmp_path: Path) -> None:
     assert "the key 'scene' stands twice" in done.stderr
 
 
-def test_a_failed_stage_keeps_the_old_dataset_and_runs_again(law: Checkout, tmp_path: Path) -> None:
-    checkout = Checkout(tmp_path)
-    for part in ("results", ".snakemake"):
-        shutil.copytree(law.folder / part, tmp_path / part)
+def test_a_failed_stage_keeps_the_old_dataset_and_runs_again(
+    finished: Finished, tmp_path: Path
+) -> None:
+    checkout = finished.copy(tmp_path)
     assert checkout.would_run(TINY) == set()
     before = checkout.results()["tiny/detections.nc"]
     no_law = merged(TINY, {"focus_law": {"fraction": {"stop": 0.42}}})
