@@ -1,30 +1,31 @@
-"""What pure functions of frozen things have found before, by which thing it is."""
+"""What pure functions of frozen things have found before, by which things they are."""
 
 import functools
 from collections.abc import Callable
-from typing import TypeVar
+from typing import TypeVar, TypeVarTuple
 
 _MOST = 4096
-"""Of things that a function remembers, and holds meanwhile."""
-_Thing = TypeVar("_Thing")
+"""Of what a function has found, and holds meanwhile."""
+_Things = TypeVarTuple("_Things")
 _Found = TypeVar("_Found")
 
 
-def remembered(function: Callable[[_Thing], _Found]) -> Callable[[_Thing], _Found]:
-    """Return a pure function of frozen things that works once for each of them."""
-    # by which thing it is, as comparing what is in it takes longer; held, so that it stays the only
-    # one of its number
-    found: dict[int, tuple[_Thing, _Found]] = {}
+def remembered(function: Callable[[*_Things], _Found]) -> Callable[[*_Things], _Found]:
+    """Return a pure function of frozen things that works once for the same of them."""
+    # by which things they are, as comparing what is in them takes longer; held, so that they stay
+    # the only ones of their numbers
+    found: dict[tuple[int, ...], tuple[object, _Found]] = {}
 
     @functools.wraps(function)
-    def asked(thing: _Thing) -> _Found:
-        before = found.get(id(thing))
+    def asked(*things: *_Things) -> _Found:
+        which = tuple(map(id, things))
+        before = found.get(which)
         if before is not None:
             return before[1]
-        result = function(thing)
+        result = function(*things)
         if len(found) >= _MOST:
             found.clear()
-        found[id(thing)] = thing, result
+        found[which] = things, result
         return result
 
     return asked

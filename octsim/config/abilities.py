@@ -102,7 +102,7 @@ def _effects(config: Config) -> Iterator[Asked]:
 
 
 def _indices(config: Config) -> Iterator[Asked]:
-    given = dict(config.scene.refractive_index)
+    given = config.scene.refractive_index.given
     for medium in _dispersive(config):
         key = f"scene.refractive_index.{medium}"
         yield Asked(Ability.DISPERSION, key, described(given[medium]))

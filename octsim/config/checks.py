@@ -30,6 +30,11 @@ LARGEST_DIAMETER = 1e4
 LARGEST_GAP = 1e7
 """Gap, in diameters, above which the last digit of a height turns the cylinder's normal."""
 _FINEST = 10 * 10.0**-DECIMALS
+_SECTIONS = tuple(
+    name
+    for name, field in Config.model_fields.items()
+    if isinstance(field.annotation, type) and issubclass(field.annotation, BaseModel)
+)
 
 
 @remembered
@@ -109,9 +114,8 @@ def impossible(config: Config) -> Iterator[str]:
             "processing.sinusoid.envelope: 'common' given, which is for a series at one diameter; "
             "a sweep needs 'each'"
         )
-    for section in type(config).model_fields:
-        value = getattr(config, section)
-        for key, said in _wrong_ranges(value) if isinstance(value, BaseModel) else ():
+    for section in _SECTIONS:
+        for key, said in _wrong_ranges(getattr(config, section)):
             yield f"{section}.{key}: {said.format(section)}"
     key, focus = highest_focus(config)
     distance = config.objective.focus_distance

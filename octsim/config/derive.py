@@ -153,6 +153,7 @@ class ConfigsAt:
         self._base = base
         self._plain = Config.model_validate(base)
         self._made: dict[tuple[object, ...], tuple[Section, list[Any]]] = {}
+        self._kept = functools.cache(self._parts_beside)
 
     def at(self, values: Mapping[str, Any]) -> Config:
         """Return the config with some dotted keys at these values.
@@ -181,11 +182,29 @@ class ConfigsAt:
             for key in keys:
                 laid = merge(laid, nested(key, values[key]))
             model: Any = Config.model_fields[name].annotation
-            found = model.model_validate(overlaid({name: self._base[name]}, laid)[name]), own
+            given = overlaid({name: self._base[name]}, laid)[name]
+            kept = self._kept(name, *keys)
+            one = model.model_validate({**given, **kept})
+            # tuples too are the same ones, as what is found of them is remembered by which they are
+            found = one.model_copy(update=kept), own
             if len(self._made) >= _MOST_MADE:  # the first go, as neighbours have the last in common
                 del self._made[next(iter(self._made))]
             self._made[which] = found
         return found[0]
+
+    def _parts_beside(self, name: str, *keys: str) -> Mapping[str, Any]:
+        """Return the parts of a section, checked, that no key has anything in: all share them."""
+        section = getattr(self._plain, name)
+        varied = {key.split(".")[1] for key in keys if "." in key}
+        parts = {part: getattr(section, part) for part in {*type(section).model_fields} - varied}
+        return {part: value for part, value in parts.items() if _is_checked(value)}
+
+
+def _is_checked(value: object) -> bool:
+    """Return whether a part can be given as it is, and not as the text that it was made of."""
+    if isinstance(value, tuple):
+        return bool(value) and all(isinstance(one, Section) for one in value)
+    return isinstance(value, Section)
 
 
 def changed(config: Config, *overlays: Mapping[str, Any]) -> Config:

@@ -35,7 +35,7 @@ def require_varied(config: Config, key: str) -> None:
     ConfigError
         If it is unknown, or a run has one.
     """
-    media = dict(config.scene.refractive_index)
+    media = config.scene.refractive_index.given
     attenuated = key.startswith(_ATTENUATION) and key.removeprefix(_ATTENUATION) in media
     if attenuated or key.startswith(_ZERNIKE):
         return  # absent, either is zero

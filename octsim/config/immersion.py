@@ -74,7 +74,7 @@ def impossible_immersion(config: Config) -> Iterator[str]:
             f"{immersion}, the immersion, scene.refractive_index.{immersion} = {index}"
         )
     for medium in dict.fromkeys((immersion, slide.medium)):
-        if scene.attenuation.of.get(medium) or absorbs(dict(scene.refractive_index)[medium]):
+        if scene.attenuation.of.get(medium) or absorbs(scene.refractive_index.given[medium]):
             yield (
                 f"{_KEY}: {immersion} given, but {medium} attenuates, whose way below the scene is "
                 f"not that of an objective in {slide.medium}; leave its attenuation out"

@@ -37,6 +37,11 @@ class RefractiveIndex(Section):
     )
 
     @property
+    def given(self) -> Mapping[str, Any]:
+        """What is given for each medium, by its name."""
+        return _by_name(self)
+
+    @property
     def of(self) -> Mapping[str, Material]:
         """Material of each medium by its name."""
         return _materials(self)
@@ -51,7 +56,7 @@ class AttenuationConfig(Section):
     @property
     def of(self) -> Mapping[str, float]:
         """Attenuation of each medium that is named, 1/µm."""
-        return dict(self)
+        return _by_name(self)
 
 
 def _thickness(value: object) -> object:
@@ -153,8 +158,8 @@ class SceneConfig(Section):
 
     @property
     def host(self) -> int:
-        """Which layer the cylinders lie in: the last of water, or without one the last of all."""
-        return _host(self)
+        """Which layer the cylinders lie in (`host_of`)."""
+        return host_of(self.layers)
 
     @property
     def floor(self) -> float:
@@ -184,22 +189,12 @@ class SceneConfig(Section):
     @property
     def swept(self) -> tuple[str, ...]:
         """Dotted keys of what has no size of its own; of a scene that is possible just one."""
-        cylinders = (
-            f"scene.cylinders.{place}"
-            for place, cylinder in enumerate(self.cylinders)
-            if cylinder.diameter is None
-        )
-        layers = (
-            f"scene.layers.{place}"
-            for place, layer in enumerate(self.layers)
-            if layer.thickness == SWEPT
-        )
-        return (*cylinders, *layers)
+        return _swept(self.layers, self.cylinders)
 
     @property
     def media(self) -> Mapping[str, str]:
         """Names of the media that the scene is made of, by the dotted keys that name them."""
-        return _media(self)
+        return _media(self.layers, self.cylinders)
 
     @property
     def objective_medium(self) -> str:
@@ -240,15 +235,34 @@ def _materials(indices: RefractiveIndex) -> Mapping[str, Material]:
 
 
 @remembered
-def _host(scene: SceneConfig) -> int:
-    water = [place for place, layer in enumerate(scene.layers) if layer.medium == "water"]
-    return max(water) if water and max(water) > 0 else len(scene.layers) - 1
+def _by_name(of_media: Section) -> Mapping[str, Any]:
+    return MappingProxyType(dict(of_media))
 
 
 @remembered
-def _media(scene: SceneConfig) -> Mapping[str, str]:
-    found = {f"scene.layers.{place}": layer.medium for place, layer in enumerate(scene.layers)}
-    for place, cylinder in enumerate(scene.cylinders):
+def host_of(layers: tuple[Layer, ...]) -> int:
+    """Return which layer cylinders lie in: the last of water, or without one the last of all."""
+    water = [place for place, layer in enumerate(layers) if layer.medium == "water"]
+    return max(water) if water and max(water) > 0 else len(layers) - 1
+
+
+@remembered
+def _swept(layers: tuple[Layer, ...], cylinders: tuple[CylinderConfig, ...]) -> tuple[str, ...]:
+    bodies = (
+        f"scene.cylinders.{place}"
+        for place, cylinder in enumerate(cylinders)
+        if cylinder.diameter is None
+    )
+    plates = (
+        f"scene.layers.{place}" for place, layer in enumerate(layers) if layer.thickness == SWEPT
+    )
+    return (*bodies, *plates)
+
+
+@remembered
+def _media(layers: tuple[Layer, ...], cylinders: tuple[CylinderConfig, ...]) -> Mapping[str, str]:
+    found = {f"scene.layers.{place}": layer.medium for place, layer in enumerate(layers)}
+    for place, cylinder in enumerate(cylinders):
         found[f"scene.cylinders.{place}.medium"] = cylinder.medium
         for depth, shell in enumerate(cylinder.shells):
             found[f"scene.cylinders.{place}.shells.{depth}.medium"] = shell.medium

@@ -31,7 +31,7 @@ def impossible_scene(config: Config) -> Iterator[str]:
 
 def _media(config: Config) -> Iterator[str]:
     scene, media = config.scene, config.media
-    known, used = dict(scene.refractive_index), set(media.values())
+    known, used = scene.refractive_index.given, set(media.values())
     for key, medium in media.items():
         if medium not in known:
             nearest = difflib.get_close_matches(medium, known, n=1, cutoff=0)[0]
@@ -58,7 +58,7 @@ def _media(config: Config) -> Iterator[str]:
 
 def _indices(config: Config) -> Iterator[str]:
     """Say which dispersions of the scene are not known, or impossible, somewhere in the band."""
-    given = dict(config.scene.refractive_index)
+    given = config.scene.refractive_index.given
     beam, around = config.beam, config.scene.objective_medium
     known, one = span_of(given[around]) or (0.0, math.inf), beam.wavelength
     if beam.waist is not None and isinstance(one, float) and not known[0] <= one <= known[1]:

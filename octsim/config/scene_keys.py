@@ -49,7 +49,7 @@ def _values(config: Config) -> Iterator[tuple[str, float]]:
         for depth, shell in enumerate(cylinder.shells):
             yield f"{key}.shells.{depth}.thickness", shell.thickness
     for medium in dict.fromkeys(config.media.values()):
-        index = dict(scene.refractive_index)[medium]
+        index = scene.refractive_index.given[medium]
         yield f"{_INDICES}{medium}", material_of(index).index(config.spectrum.middle).real
     for medium, attenuation in scene.attenuation.of.items():
         yield f"{_ATTENUATIONS}{medium}", attenuation

@@ -35,7 +35,7 @@ def _conventions(config: Config) -> Iterator[str]:
             f"polarisation.input: {state} is {vector} with fields e^(−iωt), of {helicity} helicity "
             f"(Hecht); IEEE calls it {other}-handed"
         )
-    given, used = dict(config.scene.refractive_index), config.media.values()
+    given, used = config.scene.refractive_index.given, config.media.values()
     for medium in dict.fromkeys(used):
         if isinstance(name := given[medium], str):
             yield f"scene.refractive_index.{medium}: {name} is by {SHIPPED[name].origin}"

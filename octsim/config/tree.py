@@ -31,7 +31,7 @@ def paths_by_digits(scene: SceneConfig) -> int:
     planes = _changes([layer.medium for layer in scene.layers])
     if not scene.cylinders:
         return planes
-    walls = [_changes(inwards(scene, one)) for one in scene.cylinders]
+    walls = [_changes(inwards(scene.host_medium, one)) for one in scene.cylinders]
     lone = planes == 1 and walls == [1] and not scene.cylinders[0].elevation
     return 2 if lone else 0
 

@@ -24,6 +24,11 @@ GRIDS: list[dict[str, Any]] = [
         "objective.zernike.11": ["0 nm", "1 nm"],
         "sweep.focus": ["law", {"slope": 0.5, "intercept": "1 nm"}],
     },
+    {
+        "scene.gap": ["1 nm", "2 nm"], "scene.cylinders.0.azimuth": ["0 deg", "3 deg"],
+        "scene.refractive_index.neuron": [1.38, 1.39], "sweep.diameters.num": [11, 21],
+        "spectrum.source": ["flat", {"gaussian": {"centre": "750 nm", "fwhm": "90 nm"}}],
+    },
 ]  # fmt: skip
 
 

@@ -62,7 +62,7 @@ def index_of(medium_of: Callable[[Config], str], **others: Any) -> Parameter:
 
     def overlay(config: Config, value: float) -> Overlay:
         medium = medium_of(config)
-        given = dict(config.scene.refractive_index)[medium]
+        given = config.scene.refractive_index.given[medium]
         index = moved(given, value, config.spectrum.middle)
         return nested(f"scene.refractive_index.{medium}", index)
 

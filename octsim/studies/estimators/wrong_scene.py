@@ -43,7 +43,7 @@ def other_scenes(
 ) -> list[OtherScene]:
     """Return the spectra of a sweep (foci (D,) in µm) of the model's own scene and of others."""
     scene = config.scene
-    gap, of = scene.swept_gap + GAP, dict(scene.refractive_index)
+    gap, of = scene.swept_gap + GAP, scene.refractive_index.given
     index = moved(of[scene.swept_medium], config.swept_index + INDEX, config.spectrum.middle)
     changes: Mapping[str, tuple[Mapping[str, Any], float]] = {
         "own": ({}, 0.0),

@@ -90,7 +90,7 @@ def variants_of(config: Config) -> dict[str, Config]:
     found = {CONFIGURED: config}
     if shells_of(config):
         return found
-    membrane, indices = config.responses.membrane, dict(config.scene.refractive_index)
+    membrane, indices = config.responses.membrane, config.scene.refractive_index.given
     name = "membrane"
     while name in indices:
         name += "_"
