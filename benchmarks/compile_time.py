@@ -17,7 +17,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from octsim.base.provenance import PACKAGE
+from octsim.base.carried import PACKAGE
 
 WORK = """
 import octsim

@@ -18,7 +18,7 @@ import yaml
 
 from octsim.archive.compare import compare
 from octsim.archive.compare_text import lines
-from octsim.base.provenance import PACKAGE
+from octsim.base.carried import PACKAGE
 
 PATHS = {"tracing": {"preset": "standard"}}
 SMALL: dict[str, Any] = {

@@ -5,8 +5,9 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from octsim.base.carried import PACKAGE
 from octsim.base.files import digest_of
-from octsim.base.provenance import PACKAGE, source_digest
+from octsim.base.provenance import source_digest
 
 if TYPE_CHECKING:
     # the workflow asks for the code of a report, and needs no datasets for that

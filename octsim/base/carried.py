@@ -1,9 +1,9 @@
-"""Where the workflow is: in the checkout, or in the installed package, which carries it."""
+"""Where the package is, and the workflow: in the checkout, or in the package, which carries it."""
 
 from pathlib import Path
 
-from octsim.base.provenance import PACKAGE
-
+PACKAGE = Path(__file__).parents[1]
+"""Folder of the package."""
 CARRIED = PACKAGE / "carried"
 """What a wheel has of a checkout: the Snakefile, its scripts, profiles and the thesis's config."""
 

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from platformdirs import user_cache_path
 
-from octsim.base.provenance import PACKAGE
+from octsim.base.carried import PACKAGE
 
 VARIABLE = "NUMBA_CACHE_DIR"
 """Environment variable that names a place, as numba's own does."""

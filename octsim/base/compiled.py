@@ -11,10 +11,11 @@ from typing import Any, TypeVar
 import llvmlite.binding
 import numba
 
+from octsim.base.carried import PACKAGE
 from octsim.base.compile_time import counted
 from octsim.base.compile_whole import as_a_whole
 from octsim.base.kept_code import KeptCode
-from octsim.base.provenance import PACKAGE, source_digest
+from octsim.base.provenance import source_digest
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 

@@ -1,15 +1,15 @@
 """What made a dataset: a digest of its sources, and the environment that they ran in."""
 
-import ast
 import hashlib
 import platform
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
-PACKAGE = Path(__file__).parents[1]
-"""Folder of the package."""
+from octsim.base.carried import PACKAGE
+from octsim.base.kept_syntax import KeptSyntax
+
 _COMPUTE = ("numpy", "scipy", "numba", "llvmlite", "xarray", "netCDF4")
 LOCK = "requirements.lock"
 """Pinned versions of what octsim needs, in a checkout."""
@@ -65,89 +65,64 @@ def source_digest(*sources: str | Path, without: Iterable[str] = ()) -> str:
     str
         Twelve hexadecimal digits of a SHA-256.
     """
-    left_out = tuple(without)
+    left_out = [f"{name}." for name in without]
     waiting = [path for source in sources for path in _files(source)]
-    dumps: dict[Path, str] = {}
+    said: dict[Path, str] = {}
     while waiting:
         path = waiting.pop()
-        if path in dumps or any(_is_of(path, name) for name in left_out):
+        own = f"{'.'.join(_module(path))}."
+        if path in said or any(own.startswith(name) for name in left_out):
             continue
-        imported, dumps[path] = _syntax_tree(path)
+        said[path], imported = _said(path)
         waiting.extend(imported)
+    _kept().keep()
     digest = hashlib.sha256()
-    for name, path in sorted((_name_of(path), path) for path in dumps):
-        digest.update(f"{name}\n{dumps[path]}\n".encode())
+    for name, path in sorted((_name_of(path), path) for path in said):
+        digest.update(f"{name}\n{said[path]}\n".encode())
     return digest.hexdigest()[:12]
 
 
-def _files(source: str | Path) -> list[Path]:
-    return [source] if isinstance(source, Path) else list(_modules(source))
+def _files(source: str | Path) -> tuple[Path, ...]:
+    return (source,) if isinstance(source, Path) else _modules(source)
 
 
-def _is_of(path: Path, name: str) -> bool:
-    """Return whether a file is a module, or part of a package, of this name."""
-    place = PACKAGE.parent.joinpath(*name.split("."))
-    return path == place.with_suffix(".py") or place in path.parents
+@cache
+def _module(path: Path) -> tuple[str, ...]:
+    """Return the name of the module that a file of this package is, part by part."""
+    inside = PACKAGE in path.parents
+    return path.relative_to(PACKAGE.parent).with_suffix("").parts if inside else ()
 
 
+@cache
 def _name_of(path: Path) -> str:
     """Return what tells a file from others, wherever the checkout stands."""
     inside = PACKAGE in path.parents
     return path.relative_to(PACKAGE.parent).as_posix() if inside else path.name
 
 
-def _modules(name: str) -> Iterator[Path]:
-    """Return the files that are run when a module of this package is imported, itself last."""
-    place = PACKAGE.parent
-    for part in name.split("."):
-        place = place / part
-        if (place / "__init__.py").is_file():
-            yield place / "__init__.py"
-    if place.with_suffix(".py").is_file():
-        yield place.with_suffix(".py")
+@cache
+def _kept() -> KeptSyntax:
+    return KeptSyntax()
 
 
 @cache
-def _syntax_tree(path: Path) -> tuple[tuple[Path, ...], str]:
-    """Return the files of this package and its folder that a file imports, and its tree as text."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    for node in ast.walk(tree):
-        for field in ("body", "orelse", "finalbody"):
-            held = getattr(node, field, None)
-            if isinstance(held, list):
-                kept = [part for part in held if not (_is_text(part) or _is_for_types(part))]
-                setattr(node, field, kept or (held and [ast.Pass()]))
+def _said(path: Path) -> tuple[str, tuple[Path, ...]]:
+    """Return the digest of what a file says, and what it imports of this package and its folder."""
+    found = _kept().of(path.read_bytes(), _module(path))
     imported: list[Path] = []
-    for node in ast.walk(tree):
-        for name in _imported(node, path):
-            imported.extend(_modules(name) if name.split(".")[0] == PACKAGE.name else ())
-            beside = path.with_name(f"{name}.py")
-            if PACKAGE not in path.parents and beside.is_file():
-                imported.append(beside)
-    return tuple(imported), ast.dump(tree)
+    for name in found.imported:
+        imported.extend(_modules(name) if name.split(".")[0] == PACKAGE.name else ())
+        beside = path.with_name(f"{name}.py")
+        if PACKAGE not in path.parents and beside.is_file():
+            imported.append(beside)
+    return found.digest, tuple(imported)
 
 
-def _imported(node: ast.AST, path: Path) -> Iterator[str]:
-    """Return the full names of the modules that a node imports, or may: a name can be a module."""
-    if isinstance(node, ast.Import):
-        yield from (alias.name for alias in node.names)
-    elif isinstance(node, ast.ImportFrom):
-        module = node.module or ""
-        if node.level:
-            parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
-            module = ".".join([*parts[: -node.level], *filter(None, [module])])
-        yield module
-        yield from (f"{module}.{alias.name}" for alias in node.names)
-
-
-def _is_for_types(node: ast.stmt) -> bool:
-    """Return whether a statement is what only a type checker reads."""
-    return isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING")
-
-
-def _is_text(node: ast.stmt) -> bool:
-    return (
-        isinstance(node, ast.Expr)
-        and isinstance(node.value, ast.Constant)
-        and isinstance(node.value.value, str)
-    )
+@cache
+def _modules(name: str) -> tuple[Path, ...]:
+    """Return the files that are run when a module of this package is imported, itself last."""
+    place, found = PACKAGE.parent, []
+    for part in name.split("."):
+        place = place / part
+        found.append(place / "__init__.py")
+    return tuple(filter(Path.is_file, (*found, place.with_suffix(".py"))))

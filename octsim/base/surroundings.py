@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from importlib.machinery import PathFinder
 from io import TextIOWrapper
 
-from octsim.base.provenance import PACKAGE
+from octsim.base.carried import PACKAGE
 
 _KEPT = ("PYTHONDONTWRITEBYTECODE", "PYTHONPYCACHEPREFIX", "PYTHONUNBUFFERED")
 """Of Python's variables: where bytecode goes, and when a line is shown, changes no result."""

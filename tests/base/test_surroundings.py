@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from octsim.base.provenance import PACKAGE
+from octsim.base.carried import PACKAGE
 from octsim.base.surroundings import settled
 
 SETTLED = "from octsim.base.surroundings import settle; settle(); "
