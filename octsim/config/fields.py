@@ -41,7 +41,9 @@ def plain_data(value: Any) -> Any:
         return value
     if isinstance(value, Mapping):
         return {key: plain_data(part) for key, part in value.items()}
-    if isinstance(value, BaseModel | str | bytes | int | float) and not hasattr(value, "dtype"):
+    if isinstance(value, BaseModel):
+        return value
+    if isinstance(value, str | bytes | int | float) and not hasattr(value, "dtype"):
         return value
     if hasattr(value, "__array__"):
         import numpy as np  # here, as reading a config takes half as long without

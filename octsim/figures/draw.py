@@ -59,6 +59,8 @@ def draw(
         for task in tasks:
             _draw(task)
         return
+    for one in figures.values():  # before there are several processes, which would each load them
+        named(one.figure.draw)
     with ProcessPoolExecutor(threads, get_context("fork"), prepare) as pool:
         list(pool.map(_draw, tasks))
 

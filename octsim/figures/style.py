@@ -13,6 +13,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.collections import Collection, QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -37,6 +39,7 @@ _UNDATED: Mapping[str, dict[str, Any]] = {
     ".svg": {"Date": None},
     ".pdf": {"CreationDate": None},
 }
+_CANVAS = {".png": FigureCanvasAgg, ".svg": FigureCanvasSVG, ".pdf": FigureCanvasPdf}
 _LOOK: Any = {
     "axes.formatter.useoffset": False,  # ticks say what they are
     "axes.grid": True,
@@ -113,7 +116,7 @@ def save(figure: Figure, path: Path) -> None:
     """Write a figure as its path's ending says, whole or not at all, the same bytes each time.
 
     What has very many points is pixels in an SVG or a PDF too, so that its size does not grow with
-    the data.
+    the data. All forms have the layout that is found first.
 
     Raises
     ------
@@ -123,8 +126,14 @@ def save(figure: Figure, path: Path) -> None:
     FigureCanvasAgg(figure)
     for artist in figure.findobj(_has_many_points):
         artist.set_rasterized(True)
+    if figure.get_layout_engine() is not None:  # it takes as long as the drawing, each time
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")
+    # not savefig, which draws twice
+    form, kind = path.suffix.removeprefix("."), _CANVAS[path.suffix]
     with whole(path) as temporary:
-        figure.savefig(temporary, metadata=_UNDATED[path.suffix])
+        getattr(kind(figure), f"print_{form}")(temporary, metadata=_UNDATED[path.suffix])
+    figure.dpi = _LOOK["figure.dpi"]  # of an SVG and a PDF it is another
 
 
 def _has_many_points(artist: Artist) -> bool:
