@@ -21,9 +21,13 @@ from octsim.studies.calibration.study import calibration
 settings.register_profile("octsim", derandomize=True, deadline=None)
 settings.load_profile("octsim")
 ROOT = Path(__file__).parent.parent
-# a suite that a shell begins with `&` would have its processes ignore it, and tests send it to them
-if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+# where a shell began the suite with `&`, or nohup, processes would ignore what tests send them
+for number, handler in (
+    (signal.SIGINT, signal.default_int_handler),
+    (signal.SIGHUP, signal.SIG_DFL),
+):
+    if signal.getsignal(number) is signal.SIG_IGN:
+        signal.signal(number, handler)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
