@@ -77,11 +77,14 @@ def finished(once: Once) -> Finished:
 
 CALIBRATED = {
     "sweep": {"focus": {"slope": 0.58, "intercept": "66 nm"}},
-    "calibration": {"diameters": {"start": "1.3 um", "stop": "1.5 um", "num": 11}},
+    "calibration": {"diameters": {"start": "1.32 um", "stop": "1.46 um", "num": 8}},
 }
 BY_RAYS = {
     **CALIBRATED,
-    "calibration": {"diameters": {"num": 11}, "scheme": "paths"},
+    "calibration": {
+        "diameters": {"start": "1.1 um", "stop": "1.8 um", "num": 8},
+        "scheme": "paths",
+    },
 }
 
 

@@ -24,7 +24,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, calibrated: xr.Datas
     monkeypatch.setattr(in_memory, "_make", made)
     (tmp_path / "mine.yaml").write_text(
         "sweep: {focus: {slope: 0.58, intercept: 66 nm}}\n"
-        "calibration: {diameters: {start: 1.3 um, stop: 1.5 um, num: 11}}\n"
+        "calibration: {diameters: {start: 1.32 um, stop: 1.46 um, num: 8}}\n"
         "expansion: {rest: 4}\n"
     )
     rows = "".join(f"{i},{0.024 if i > 3 else 0.0}\n" for i in range(8))
