@@ -3,6 +3,7 @@
 import itertools
 import math
 from collections.abc import Iterator
+from typing import Any, get_args
 
 from pydantic import BaseModel
 
@@ -30,11 +31,6 @@ LARGEST_DIAMETER = 1e4
 LARGEST_GAP = 1e7
 """Gap, in diameters, above which the last digit of a height turns the cylinder's normal."""
 _FINEST = 10 * 10.0**-DECIMALS
-_SECTIONS = tuple(
-    name
-    for name, field in Config.model_fields.items()
-    if isinstance(field.annotation, type) and issubclass(field.annotation, BaseModel)
-)
 
 
 @remembered
@@ -48,6 +44,19 @@ def _ranges(model: BaseModel) -> list[tuple[str, Range]]:
         elif isinstance(value, BaseModel):
             found += [(f"{name}.{key}", span) for key, span in _ranges(value)]
     return found
+
+
+def _may_hold_ranges(kind: Any) -> bool:
+    """Return whether a section, or a part of one, of a type can be a range or have one."""
+    if isinstance(kind, type) and issubclass(kind, BaseModel):
+        fields = kind.model_fields.values()
+        return issubclass(kind, Range) or any(_may_hold_ranges(one.annotation) for one in fields)
+    return any(map(_may_hold_ranges, get_args(kind)))
+
+
+_WITH_RANGES = tuple(
+    n for n, one in Config.model_fields.items() if _may_hold_ranges(one.annotation)
+)
 
 
 @remembered
@@ -114,7 +123,7 @@ def impossible(config: Config) -> Iterator[str]:
             "processing.sinusoid.envelope: 'common' given, which is for a series at one diameter; "
             "a sweep needs 'each'"
         )
-    for section in _SECTIONS:
+    for section in _WITH_RANGES:
         for key, said in _wrong_ranges(getattr(config, section)):
             yield f"{section}.{key}: {said.format(section)}"
     key, focus = highest_focus(config)

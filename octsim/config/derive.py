@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from pydantic import ValidationError
+from pydantic.fields import FieldInfo
 
 from octsim.base.errors import ConfigError
 from octsim.config.abilities import as_far_as
@@ -128,13 +129,11 @@ def config_at(base: Mapping[str, Any], values: Mapping[str, Any]) -> Config:
     return Config.model_validate(overlaid(base, laid))
 
 
-@functools.lru_cache(maxsize=16)
-def _by_section(keys: tuple[str, ...]) -> Mapping[str, list[str]]:
-    """Return dotted keys by the sections that they are in."""
-    found: dict[str, list[str]] = {}
-    for key in keys:
-        found.setdefault(key.partition(".")[0], []).append(key)
-    return found
+@functools.lru_cache(maxsize=64)
+def _by_part(keys: tuple[str, ...], depth: int) -> Mapping[str, tuple[str, ...]]:
+    """Return dotted keys by the names that they have at a depth."""
+    names = dict.fromkeys(key.split(".")[depth] for key in keys)
+    return {name: tuple(k for k in keys if k.split(".")[depth] == name) for name in names}
 
 
 class ConfigsAt:
@@ -153,7 +152,7 @@ class ConfigsAt:
         self._base = base
         self._plain = Config.model_validate(base)
         self._made: dict[tuple[object, ...], tuple[Section, list[Any]]] = {}
-        self._kept = functools.cache(self._parts_beside)
+        self._beside = functools.cache(self._parts_beside)
 
     def at(self, values: Mapping[str, Any]) -> Config:
         """Return the config with some dotted keys at these values.
@@ -163,41 +162,61 @@ class ConfigsAt:
         ValidationError
             If a value is wrong.
         """
-        keys_of = _by_section(tuple(values))
+        sections = _by_part(tuple(values), 0)
         try:
-            made = {
-                section: self._section(section, keys, values) for section, keys in keys_of.items()
-            }
+            made = {name: self._section((name,), keys, values) for name, keys in sections.items()}
         except ValidationError:
             return config_at(self._base, values)  # says where it is
         return self._plain.model_copy(update=made)
 
-    def _section(self, name: str, keys: list[str], values: Mapping[str, Any]) -> Section:
+    def _section(
+        self, place: tuple[str, ...], keys: tuple[str, ...], values: Mapping[str, Any]
+    ) -> Section:
+        """Return a section, or one within it, with these keys of it at their values."""
         own = [values[key] for key in keys]
         # which value it is, as lists and mappings can't be looked up; they are held here meanwhile
-        which = (name, *keys, *map(id, own))
+        which = (place, *keys, *map(id, own))
         found = self._made.get(which)
         if found is None:
+            within, beside = self._beside(place, keys)
+            made = {part: self._section((*place, part), of, values) for part, of in within.items()}
             laid: dict[str, Any] = {}
             for key in keys:
-                laid = merge(laid, nested(key, values[key]))
-            model: Any = Config.model_fields[name].annotation
-            given = overlaid({name: self._base[name]}, laid)[name]
-            kept = self._kept(name, *keys)
-            one = model.model_validate({**given, **kept})
+                if not any(key in of for of in within.values()):
+                    laid = merge(laid, nested(key, values[key]))
+            name, model = ".".join(place), type(functools.reduce(getattr, place, self._plain))
+            given = part_of(overlaid(nested(name, part_of(self._base, name)), laid), name)
+            one = model.model_validate({**given, **beside, **made})
             # tuples too are the same ones, as what is found of them is remembered by which they are
-            found = one.model_copy(update=kept), own
+            found = one.model_copy(update=beside), own
             if len(self._made) >= _MOST_MADE:  # the first go, as neighbours have the last in common
                 del self._made[next(iter(self._made))]
             self._made[which] = found
         return found[0]
 
-    def _parts_beside(self, name: str, *keys: str) -> Mapping[str, Any]:
-        """Return the parts of a section, checked, that no key has anything in: all share them."""
-        section = getattr(self._plain, name)
-        varied = {key.split(".")[1] for key in keys if "." in key}
-        parts = {part: getattr(section, part) for part in {*type(section).model_fields} - varied}
-        return {part: value for part, value in parts.items() if _is_checked(value)}
+    def _parts_beside(
+        self, place: tuple[str, ...], keys: tuple[str, ...]
+    ) -> tuple[Mapping[str, tuple[str, ...]], Mapping[str, Any]]:
+        """Return the keys within each section of a section, and the parts that none is in.
+
+        These, checked, are the same in all configs.
+        """
+        if ".".join(place) in keys:  # it is itself among the values
+            return {}, {}
+        section = functools.reduce(getattr, place, self._plain)
+        fields, varied = type(section).model_fields, _by_part(keys, len(place))
+        within = {
+            part: of for part, of in varied.items()
+            if _is_section(fields.get(part)) and ".".join((*place, part)) not in of
+        }  # fmt: skip
+        parts = {part: getattr(section, part) for part in fields if part not in varied}
+        return within, {part: value for part, value in parts.items() if _is_checked(value)}
+
+
+def _is_section(field: FieldInfo | None) -> bool:
+    """Return whether a field is a section, whatever is given, and nothing else looks at that."""
+    kind = field.annotation if field and not field.metadata else None
+    return isinstance(kind, type) and issubclass(kind, Section)
 
 
 def _is_checked(value: object) -> bool:

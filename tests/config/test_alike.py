@@ -8,6 +8,7 @@ from octsim.config.alike import alike
 from octsim.config.derive import config_at
 from octsim.config.grid import combinations
 from octsim.config.load import load_checked, load_config
+from octsim.config.models import Config
 from octsim.config.scheme import point_cost, rate_name
 
 GRIDS: list[dict[str, Any]] = [
@@ -43,6 +44,37 @@ def test_what_combinations_cost_is_the_same_counted_together(grid: dict[str, Any
             (rate_name(one), point_cost(one)) for one, count in together for _ in range(count)
         ]
         assert sorted(expanded) == sorted((rate_name(one), point_cost(one)) for one in each)
+
+
+NEAR: list[dict[str, Any]] = [
+    {"scene.refractive_index.neuron": {"start": 1.36, "stop": 1.39, "num": 300}},
+    {"scene.cylinders.0.x": {"start": "1 um", "stop": "2 um", "num": 301}, "tracing.rays": [9, 8]},
+    {
+        "combine": "zip",
+        "sweep.diameters.stop": {"start": "1.5 um", "stop": "2 um", "num": 300},
+        "scene.refractive_index.neuron": {"start": 1.36, "stop": 1.39, "num": 300},
+        "scene.gap": {"start": "1 nm", "stop": "2 nm", "num": 300},
+    },
+]
+
+
+@pytest.mark.parametrize("grid", NEAR)
+@pytest.mark.parametrize("scheme", ["vogel", "paths", "fullwave"])
+def test_numbers_that_cost_about_the_same_are_counted_together(
+    grid: dict[str, Any], scheme: str
+) -> None:
+    config = load_config({"tracing": {"scheme": scheme}, "grid": grid})
+    for keys in ((), ("scene",), ("sweep", "spectrum")):
+        each = [at.config for at in combinations(config, *keys)]
+        few = list(alike(config, *keys))
+        assert sum(count for _, count in few) == len(each)
+        assert len(few) < 0.7 * len(each) or len(each) == 1
+
+        def seconds(one: Config) -> float:
+            return point_cost(one).seconds * one.sweep.diameters.stop
+
+        exact = sum(map(seconds, each))
+        assert sum(count * seconds(one) for one, count in few) == pytest.approx(exact, rel=0.01)
 
 
 def test_combinations_that_differ_in_no_cost_are_one_kind() -> None:
