@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 from octsim.base.errors import ConfigError
 from octsim.config.checks import plain_remarks
-from octsim.config.derive import ConfigsAt, bears_on
+from octsim.config.configs_at import ConfigsAt
+from octsim.config.derive import bears_on
 from octsim.config.fields import as_text as as_text
 from octsim.config.models import FIXED as FIXED
 from octsim.config.models import Config

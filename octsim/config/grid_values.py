@@ -12,7 +12,8 @@ from pydantic import ValidationError
 from octsim.base.errors import ConfigError
 from octsim.base.waiting import uncollected, watched
 from octsim.config.checks import impossible
-from octsim.config.derive import ConfigsAt, overlap, part_of
+from octsim.config.configs_at import ConfigsAt
+from octsim.config.derive import overlap, part_of
 from octsim.config.grid import (
     Combination,
     Remarks,
