@@ -11,6 +11,8 @@ import xarray as xr
 import yaml
 from checkout import GIVEN, ROOT, TINY, merged
 
+from octsim.base.code_folder import places
+
 SCHEME = '''"""The light of the axial ray alone."""
 
 from octsim.optics.beam import vogel_beam
@@ -91,7 +93,8 @@ def run(checkout: Path, overlay: dict[str, object], *targets: str) -> None:
     file.write_text(yaml.safe_dump(overlay), encoding="utf-8")
     snakemake = [sys.executable, "-m", "snakemake", *targets, "--cores", "2"]
     command = [*snakemake, "--configfile", str(file)]
-    environment = os.environ | {"PYTHONPATH": str(checkout)}
+    # code of sources that are the same need not be compiled again
+    environment = os.environ | {"PYTHONPATH": str(checkout), "NUMBA_CACHE_DIR": str(places()[0])}
     done = subprocess.run(
         command, cwd=checkout, env=environment, capture_output=True, text=True, check=False
     )

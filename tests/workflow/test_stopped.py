@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from checkout import ROOT, TINY, Checkout, Finished
+from checkout import DATASETS, ROOT, TINY, Checkout, Finished
 from terminal import Terminal, processes_in
 
 LINE = "octsim: stopped; run the same command again to go on"
@@ -48,23 +48,27 @@ def stopped_at(
     return terminal.screen(), status
 
 
+# a bare snakemake that is just being loaded has no code of octsim's yet
 @pytest.mark.parametrize(
-    ("command", "number"),
+    ("command", "number", "moments"),
     [
-        (RUN, signal.SIGINT),
-        pytest.param(RUN, signal.SIGTERM, marks=pytest.mark.trial),
-        pytest.param(SNAKEMAKE, signal.SIGINT, marks=pytest.mark.trial),
-        pytest.param(SNAKEMAKE, signal.SIGTERM, marks=pytest.mark.trial),
-        pytest.param(MAKE, signal.SIGINT, marks=pytest.mark.trial),
+        (RUN, signal.SIGINT, MOMENTS),
+        pytest.param(RUN, signal.SIGTERM, MOMENTS[:2], marks=pytest.mark.trial),
+        pytest.param(SNAKEMAKE, signal.SIGINT, MOMENTS[1:3], marks=pytest.mark.trial),
+        pytest.param(SNAKEMAKE, signal.SIGTERM, MOMENTS[3:], marks=pytest.mark.trial),
+        pytest.param(MAKE, signal.SIGINT, MOMENTS[::2], marks=pytest.mark.trial),
     ],
     ids=["run-INT", "run-TERM", "snakemake-INT", "snakemake-TERM", "make-INT"],
 )
 def test_a_run_stopped_again_and_again_says_one_line_each_time_and_comes_to_the_same_bits(
-    command: list[str], number: signal.Signals, finished: Finished, tmp_path: Path
+    command: list[str],
+    number: signal.Signals,
+    moments: tuple[str, ...],
+    finished: Finished,
+    tmp_path: Path,
 ) -> None:
     checkout = checkout_in(tmp_path)
-    # a bare snakemake that is just being loaded has no code of octsim's yet
-    for moment in MOMENTS[command is SNAKEMAKE :]:
+    for moment in moments:
         screen, status = stopped_at(moment, command, tmp_path, number)
         text = "\n".join(screen)
         assert "Traceback" not in text
@@ -74,8 +78,10 @@ def test_a_run_stopped_again_and_again_says_one_line_each_time_and_comes_to_the_
             assert re.match(r"make(\[\d+\])?: \*\*\* \[", screen[-1])  # within another make too
         else:
             assert status == 128 + number
-    checkout.run(TINY)
-    assert checkout.results() == finished.checkout.results()
+    asked = () if MOMENTS[-1] in moments else DATASETS
+    checkout.run(TINY, *asked)
+    assert checkout.datasets() == finished.checkout.datasets()
+    assert checkout.results() == finished.checkout.results() or asked
 
 
 def test_a_run_whose_command_is_killed_ends_too(tmp_path: Path) -> None:
