@@ -32,10 +32,10 @@ def test_the_action_potential_has_its_height_and_duration() -> None:
 def test_the_stated_error_covers_the_truth_as_often_as_one_sigma_should(
     calibrated: xr.Dataset, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(round_trips, "TRIALS", 40)
+    monkeypatch.setattr(round_trips, "TRIALS", 24)
     config = load_config(CALIBRATED)
     fired = action_potential(config, calibrated, None, 2)
-    assert fired["trip_expansion"].shape == (5, 40)
+    assert fired["trip_expansion"].shape == (5, 24)
     assert 0.60 <= float(fired["coverage_noise"].mean()) <= 0.76
     # what is not known of an instrument moves the slope by no normal deviate, as that bends over
     # it: more is within the root of the mean square, and few are far beyond
@@ -56,7 +56,7 @@ def test_the_stated_error_covers_the_truth_as_often_as_one_sigma_should(
     for variable in fired.variables.values():
         assert variable.attrs["units"]
         assert variable.attrs["long_name"]
-    assert "200 round trips" in summary(fired)
+    assert "120 round trips" in summary(fired)
     assert list(unexplained(fired)) == []
     with look():
         save(action_potential_figure(fired, calibrated), tmp_path / "fired.png")
