@@ -14,6 +14,7 @@ from made_once import Once
 from made_runs import SWEEP, WHOLE, every_stage
 
 import octsim
+from octsim.base.code_folder import places
 from octsim.config.load import load_config
 from octsim.studies.calibration.study import calibration
 
@@ -48,6 +49,16 @@ def planned(tmp_path: Path) -> Callable[..., str]:
         return done.stdout + done.stderr
 
     return planned
+
+
+@pytest.fixture
+def compiled(tmp_path: Path) -> Path:
+    """Give a folder for compiled code, with what is there: a copy of the package has the same."""
+    folder = tmp_path / "compiled"
+    folder.mkdir()
+    for one in places()[0].glob("numba-*"):
+        (folder / one.name).symlink_to(one)
+    return folder
 
 
 @pytest.fixture(scope="session")

@@ -21,6 +21,8 @@ from octsim.base.carried import PACKAGE
 VARIABLE = "NUMBA_CACHE_DIR"
 """Environment variable that names a place, as numba's own does."""
 _PREFIX = "numba-"
+SOURCES = "octsim-sources-"
+"""How names of files begin that keep what sources say."""
 _UNUSED = 30 * 24 * 3600.0  # s, after which code of other sources is removed
 
 
@@ -80,8 +82,11 @@ def use(folder: Path) -> None:
 
 
 def remove_unused(place: Path) -> None:
-    """Remove code that no process has used for a month. One that has it open goes on with it."""
+    """Remove code that no process has used for a month. One that has it open goes on with it.
+
+    So is what is kept of sources (`octsim.base.kept_syntax`), if nothing was added for as long.
+    """
     with suppress(OSError):
-        for folder in place.glob(f"{_PREFIX}*"):
-            if folder.stat().st_mtime < time.time() - _UNUSED:
-                shutil.rmtree(folder, ignore_errors=True)
+        for kept in (*place.glob(f"{_PREFIX}*"), *place.glob(f"{SOURCES}*.json")):
+            if kept.stat().st_mtime < time.time() - _UNUSED:
+                kept.unlink() if kept.is_file() else shutil.rmtree(kept, ignore_errors=True)

@@ -11,13 +11,11 @@ from functools import cache
 from pathlib import Path
 
 from octsim.base import syntax
-from octsim.base.code_folder import places, writable
+from octsim.base.code_folder import SOURCES, places, writable
 from octsim.base.errors import FileError
 from octsim.base.files import read_bounded, whole
 from octsim.base.syntax import Syntax, syntax_of
 
-NAME = "sources.json"
-"""Of the file, where compiled code is kept."""
 _LARGEST = 10_000_000
 """Bytes of a file that is read; one that has grown so large, by many edits, is begun anew."""
 
@@ -51,23 +49,23 @@ class KeptSyntax:
         place = writable(places()) if self._new else None
         self._new = False
         if place:
-            text = json.dumps([_made_by(), self._found])
+            text = json.dumps(self._found)
             # without it, it is found anew each time
-            with suppress(OSError, FileError), whole(place / NAME) as file:
+            with suppress(OSError, FileError), whole(place / name()) as file:
                 file.write_text(f"{_digest(text)}\n{text}", encoding="utf-8")
 
 
 def _read() -> dict[str, Syntax]:
-    """Return what is kept in the first place that has some; what is damaged is as good as none."""
+    """Return what is kept in any of the places; what is damaged is as good as none."""
+    kept: dict[str, Syntax] = {}
     for place in places():
         with suppress(OSError, ValueError):
-            held = read_bounded(place / NAME, _LARGEST).decode("utf-8")
+            held = read_bounded(place / name(), _LARGEST).decode("utf-8")
             digest, text = held.split("\n", 1)
             if digest == _digest(text):
-                made_by, found = json.loads(text)
-                if made_by == _made_by():
-                    return {key: Syntax(one, tuple(names)) for key, (one, names) in found.items()}
-    return {}
+                found = json.loads(text).items()
+                kept |= {key: Syntax(one, tuple(names)) for key, (one, names) in found}
+    return kept
 
 
 def _digest(text: str) -> str:
@@ -75,6 +73,10 @@ def _digest(text: str) -> str:
 
 
 @cache
-def _made_by() -> str:
-    """Return what finds it, told from others: its code, and the Python whose trees they are."""
-    return _digest(Path(syntax.__file__).read_text(encoding="utf-8") + platform.python_version())
+def name() -> str:
+    """Return the name of the file, of what finds it: its code, and the Python whose trees they are.
+
+    It lies where compiled code does.
+    """
+    code = Path(syntax.__file__).read_text(encoding="utf-8")
+    return f"{SOURCES}{_digest(code + platform.python_version())[:12]}.json"

@@ -1,29 +1,34 @@
 """Combinations of a grid that take about as much as each other, counted together."""
 
+import itertools
 import math
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 from pydantic import BaseModel
 
 from octsim.base.remembered import remembered
-from octsim.config.grid import axes, combinations, row_text, varied_keys
-from octsim.config.models import FIXED, Config, Grid
+from octsim.config.configs_at import ConfigsAt
+from octsim.config.grid import Axis, axes, row_text
+from octsim.config.models import FIXED, Config
 
 _COSTS_NOTHING = (
     "scene.gap", "objective.numerical_aperture", "objective.focus_distance",
     "objective.magnification", "detector.core_diameter", "processing",
 )  # fmt: skip
 """Keys that no cost follows from, nor from parts of them."""
-_MEASURED = re.compile(r"([-+]?[0-9][0-9.e+-]*) ([^\W\d]\S*)")
+_INDEX = "scene.refractive_index."
+_MEASURED = re.compile(r"([-+]?[0-9][0-9.]*(?:e[-+]?[0-9]+)?) (\S+)")
 
 
 def alike(config: Config, *keys: str) -> Iterator[tuple[Config, int]]:
     """Yield a config of each kind of combinations that cost about the same, and how many there are.
 
-    Of one kind are numbers that are the same to three digits, but whole ones, which count things.
+    Numbers and lengths that are the same to three digits are of one kind; whole numbers, which
+    count things, and indices that several media have, between which nothing is reflected, are of
+    their own.
 
     Parameters
     ----------
@@ -42,50 +47,50 @@ def alike(config: Config, *keys: str) -> Iterator[tuple[Config, int]]:
 
 
 def _of_costs(config: Config, keys: tuple[str, ...]) -> Iterator[tuple[Config, int]]:
-    """Yield the combinations of what costs follow from, and how often each is there."""
-    varied = {k: v for k, v in config.grid.varied.items() if not _costs_nothing(k)}
-    standing = {key: _standing_for(values) for key, values in varied.items()}
-    product = config.grid.combine == "product"
-    kept = {key: _unique(values) if product else values for key, values in standing.items()}
-    grid = Grid.model_validate({"combine": config.grid.combine, **kept})
-    few = combinations(config.model_copy(update={"grid": grid}), *keys)
-    if product:
-        lost = math.prod(
-            len(axis.rows) for axis in axes(config, *keys) if _costs_nothing(axis.keys[0])
-        )
-        counts = {key: Counter(map(_value_text, values)) for key, values in standing.items()}
-        for at in few:
-            each = (counts[key][_value_text(value)] for key, value in at.values.items())
-            yield at.config, lost * math.prod(each)
-        return
-    bearing = varied_keys(config, *keys)
-    rows = zip(*(config.grid.varied[key] for key in bearing), strict=True)
-    places = {row_text(row): place for place, row in enumerate(rows)}.values()
-    columns = [standing[key] for key in bearing if key in standing]
-    together = Counter(row_text(tuple(one[place] for one in columns)) for place in places)
-    for at in few:
-        yield at.config, together.get(row_text(tuple(at.values.values())), 1)
+    """Yield combinations of what costs follow from, and of how many others each is the first."""
+    shared = _shared_indices(config)
+    along = [_kinds_along(axis, shared) for axis in axes(config, *keys)]
+    configs = ConfigsAt({**config.to_dict(), "grid": {}})
+    for chosen in itertools.product(*along):
+        values = {key: value for one, _ in chosen for key, value in one.items()}
+        yield configs.at(values), math.prod(count for _, count in chosen)
 
 
-def _standing_for(values: Sequence[Any]) -> list[Any]:
-    """Return for each value the first of those that cost about the same."""
-    first: dict[str, Any] = {}
-    return [first.setdefault(_about(value), value) for value in values]
+def _kinds_along(axis: Axis, shared: frozenset[float]) -> list[tuple[dict[str, Any], int]]:
+    """Return the first of the values along an axis that cost about the same, and how many do."""
+    places = [place for place, key in enumerate(axis.keys) if not _costs_nothing(key)]
+    counts: Counter[str] = Counter()
+    firsts: dict[str, dict[str, Any]] = {}
+    for row in axis.rows:
+        kind = "\n".join(_rounded(row[place], shared) for place in places)
+        counts[kind] += 1
+        if kind not in firsts:
+            firsts[kind] = {axis.keys[place]: row[place] for place in places}
+    return [(firsts[kind], count) for kind, count in counts.items()]
 
 
-def _about(value: Any) -> str:
-    """Return a value as text, a number or length to three digits: it costs as much to 1 %."""
+def _shared_indices(config: Config) -> frozenset[float]:
+    """Return the indices that several media have, somewhere in the grid."""
+    of: dict[str, Any] = {
+        name: [given] for name, given in config.scene.refractive_index.given.items()
+    }
+    of |= {
+        key.removeprefix(_INDEX): values
+        for key, values in config.grid.varied.items()
+        if key.startswith(_INDEX)
+    }
+    counts = Counter(
+        index for given in of.values() for index in {one for one in given if isinstance(one, float)}
+    )
+    return frozenset(index for index, media in counts.items() if media > 1)
+
+
+def _rounded(value: Any, shared: frozenset[float]) -> str:
+    """Return a value as text, one that is measured to three digits."""
     if isinstance(value, str) and (found := _MEASURED.fullmatch(value)):
         return f"{float(found[1]):.3g} {found[2]}"
-    return f"{value:.3g}" if isinstance(value, float) else _value_text(value)
-
-
-def _unique(values: Sequence[Any]) -> list[Any]:
-    return list({_value_text(value): value for value in values}.values())
-
-
-def _value_text(value: Any) -> str:
-    return row_text((value,))
+    measured = isinstance(value, float) and value not in shared
+    return f"{value:.3g}" if measured else row_text((value,))
 
 
 def _costs_nothing(key: str) -> bool:

@@ -55,7 +55,7 @@ def _may_hold_ranges(kind: Any) -> bool:
 
 
 _WITH_RANGES = tuple(
-    n for n, one in Config.model_fields.items() if _may_hold_ranges(one.annotation)
+    name for name, field in Config.model_fields.items() if _may_hold_ranges(field.annotation)
 )
 
 

@@ -2,7 +2,7 @@
 
 import functools
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
@@ -15,18 +15,23 @@ _MOST_MADE = 10_000
 """Sections that are kept for other combinations."""
 
 
-@functools.lru_cache(maxsize=64)
-def _by_part(keys: tuple[str, ...], depth: int) -> Mapping[str, tuple[str, ...]]:
-    """Return dotted keys by the names that they have at a depth."""
-    names = dict.fromkeys(key.split(".")[depth] for key in keys)
-    return {name: tuple(k for k in keys if k.split(".")[depth] == name) for name in names}
+class _Divided(NamedTuple):
+    """The keys of a section at other values, and its parts that they do not reach."""
+
+    by_section: Mapping[str, tuple[str, ...]]
+    """Keys that are within a section of this one, by its name."""
+    other: tuple[str, ...]
+    """The other keys."""
+    shared: Mapping[str, Any]
+    """Parts, checked, that no key is in."""
 
 
 class ConfigsAt:
     """Configs of one config's plain data, with some dotted keys at other values.
 
-    They are those of `config_at`, made of their sections: each is checked once for its own values,
-    as none depends on another.
+    They are those of `config_at`. Sections are made once for the values of the keys in them, and
+    have the same objects wherever no key is in, as what follows from these is remembered by which
+    they are (`octsim.base.remembered`).
 
     Parameters
     ----------
@@ -37,8 +42,8 @@ class ConfigsAt:
     def __init__(self, base: Mapping[str, Any]) -> None:
         self._base = base
         self._plain = Config.model_validate(base)
+        self._divided: dict[tuple[object, ...], _Divided] = {}
         self._made: dict[tuple[object, ...], tuple[Section, list[Any]]] = {}
-        self._beside = functools.cache(self._parts_beside)
 
     def at(self, values: Mapping[str, Any]) -> Config:
         """Return the config with some dotted keys at these values.
@@ -64,41 +69,59 @@ class ConfigsAt:
         which = (place, *keys, *map(id, own))
         found = self._made.get(which)
         if found is None:
-            within, beside = self._beside(place, keys)
-            made = {part: self._section((*place, part), of, values) for part, of in within.items()}
-            laid: dict[str, Any] = {}
-            for key in keys:
-                if not any(key in of for of in within.values()):
-                    laid = merge(laid, nested(key, values[key]))
-            plain = functools.reduce(getattr, place, self._plain)
-            if laid or _looks_at_all(type(plain)):
-                name = ".".join(place)
-                given = part_of(overlaid(nested(name, part_of(self._base, name)), laid), name)
-                plain = plain.model_validate({**given, **beside, **made})
-            # tuples too are the same ones, as what is found of them is remembered by which they are
-            found = plain.model_copy(update={**beside, **made}), own
             if len(self._made) >= _MOST_MADE:  # the first go, as neighbours have the last in common
                 del self._made[next(iter(self._made))]
-            self._made[which] = found
+            found = self._made[which] = self._made_of(place, keys, values), own
         return found[0]
 
-    def _parts_beside(
-        self, place: tuple[str, ...], keys: tuple[str, ...]
-    ) -> tuple[Mapping[str, tuple[str, ...]], Mapping[str, Any]]:
-        """Return the keys within each section of a section, and the parts that none is in.
+    def _made_of(
+        self, place: tuple[str, ...], keys: tuple[str, ...], values: Mapping[str, Any]
+    ) -> Section:
+        divided = self._divided.get((place, keys))
+        if divided is None:
+            divided = self._divided[place, keys] = self._divide(place, keys)
+        sections = divided.by_section.items()
+        made = {part: self._section((*place, part), of, values) for part, of in sections}
+        parts = {**divided.shared, **made}
+        plain = self._at(place)
+        if not divided.other and not _checks_parts(type(plain)):
+            return plain.model_copy(update=parts)
+        laid: dict[str, Any] = {}
+        for key in divided.other:
+            laid = merge(laid, nested(key, values[key]))
+        name = ".".join(place)
+        given = part_of(overlaid(nested(name, part_of(self._base, name)), laid), name)
+        checked = plain.model_validate({**given, **parts} if isinstance(given, Mapping) else given)
+        # of tuples checking makes others, and a section that checks its parts may change them
+        return checked if _checks_parts(type(plain)) else checked.model_copy(update=parts)
 
-        These, checked, are the same in all configs.
-        """
-        if ".".join(place) in keys:  # it is itself among the values
-            return {}, {}
-        section = functools.reduce(getattr, place, self._plain)
+    def _divide(self, place: tuple[str, ...], keys: tuple[str, ...]) -> _Divided:
+        if ".".join(place) in keys:  # the whole section is given
+            return _Divided({}, keys, {})
+        section = self._at(place)
         fields, varied = type(section).model_fields, _by_part(keys, len(place))
-        within = {
+        by_section = {
             part: of for part, of in varied.items()
             if _is_section(fields.get(part)) and ".".join((*place, part)) not in of
         }  # fmt: skip
+        within = {key for of in by_section.values() for key in of}
         parts = {part: getattr(section, part) for part in fields if part not in varied}
-        return within, {part: value for part, value in parts.items() if _is_checked(value)}
+        return _Divided(
+            by_section,
+            tuple(key for key in keys if key not in within),
+            {part: value for part, value in parts.items() if _is_checked(value)},
+        )
+
+    def _at(self, place: tuple[str, ...]) -> Section:
+        found: Section = functools.reduce(getattr, place, self._plain)
+        return found
+
+
+@functools.lru_cache(maxsize=64)
+def _by_part(keys: tuple[str, ...], depth: int) -> Mapping[str, tuple[str, ...]]:
+    """Return dotted keys by the names that they have at a depth."""
+    names = dict.fromkeys(key.split(".")[depth] for key in keys)
+    return {name: tuple(k for k in keys if k.split(".")[depth] == name) for name in names}
 
 
 def _is_section(field: FieldInfo | None) -> bool:
@@ -108,8 +131,8 @@ def _is_section(field: FieldInfo | None) -> bool:
 
 
 @functools.cache
-def _looks_at_all(model: type[Section]) -> bool:
-    """Return whether a section checks its parts together."""
+def _checks_parts(model: type[Section]) -> bool:
+    """Return whether a section checks its parts itself, together or one by one."""
     own = model.__pydantic_decorators__
     return bool(own.model_validators or own.field_validators)
 

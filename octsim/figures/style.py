@@ -17,6 +17,7 @@ from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.collections import Collection, QuadMesh
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import PlaceHolderLayoutEngine
 from matplotlib.lines import Line2D
 
 from octsim.base.files import whole
@@ -126,14 +127,17 @@ def save(figure: Figure, path: Path) -> None:
     FigureCanvasAgg(figure)
     for artist in figure.findobj(_has_many_points):
         artist.set_rasterized(True)
-    if figure.get_layout_engine() is not None:  # it takes as long as the drawing, each time
-        figure.draw_without_rendering()
+    if not isinstance(figure.get_layout_engine(), PlaceHolderLayoutEngine | None):
+        figure.draw_without_rendering()  # which takes as long as the drawing
         figure.set_layout_engine("none")
     # not savefig, which draws twice
-    form, kind = path.suffix.removeprefix("."), _CANVAS[path.suffix]
-    with whole(path) as temporary:
-        getattr(kind(figure), f"print_{form}")(temporary, metadata=_UNDATED[path.suffix])
-    figure.dpi = _LOOK["figure.dpi"]  # of an SVG and a PDF it is another
+    form, canvas, dpi = path.suffix.removeprefix("."), _CANVAS[path.suffix](figure), figure.dpi
+    try:
+        with whole(path) as temporary:
+            getattr(canvas, f"print_{form}")(temporary, metadata=_UNDATED[path.suffix])
+    finally:
+        figure.dpi = dpi  # an SVG and a PDF have their own
+        FigureCanvasAgg(figure)
 
 
 def _has_many_points(artist: Artist) -> bool:

@@ -6,7 +6,7 @@ import pytest
 
 from octsim.base import kept_syntax
 from octsim.base.code_folder import can_write
-from octsim.base.kept_syntax import NAME, KeptSyntax
+from octsim.base.kept_syntax import KeptSyntax, name
 from octsim.base.syntax import Syntax, syntax_of
 
 SOURCE = b"import math\n\n\ndef twice(x):\n    return 2 * x\n"
@@ -61,21 +61,21 @@ def test_a_damaged_file_is_as_good_as_none_and_replaced(
     damage: bytes | str, place: Path, parsed: list[str]
 ) -> None:
     right = found()
-    whole = (place / NAME).read_bytes()
+    whole = (place / name()).read_bytes()
     named = {"cut": whole[:-9], "changed": whole.replace(b"math", b"path")}
     bad = damage if isinstance(damage, bytes) else named[damage]
     assert bad != whole
-    (place / NAME).write_bytes(bad)
+    (place / name()).write_bytes(bad)
     assert found() == right
     assert len(parsed) == 2
-    assert (place / NAME).read_bytes() == whole
+    assert (place / name()).read_bytes() == whole
 
 
 def test_what_other_code_or_another_python_has_found_is_not_read(
     monkeypatch: pytest.MonkeyPatch, parsed: list[str]
 ) -> None:
     found()
-    monkeypatch.setattr(kept_syntax, "_made_by", lambda: "another")
+    monkeypatch.setattr(kept_syntax, "name", lambda: "of-another.json")
     found()
     assert len(parsed) == 2
 
@@ -89,11 +89,24 @@ def test_where_nothing_can_be_written_it_is_found_each_time(
     assert len(parsed) == 2
 
 
+def test_what_can_only_be_read_is_added_to_elsewhere(
+    place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, parsed: list[str]
+) -> None:
+    found()
+    image = place.rename(tmp_path.with_name("image"))
+    tmp_path.mkdir()
+    monkeypatch.setattr(kept_syntax, "places", lambda: (image, tmp_path))
+    monkeypatch.setattr(kept_syntax, "writable", lambda _: tmp_path)
+    for source in (SOURCE, OTHER, SOURCE, OTHER):
+        found(source)
+    assert len(parsed) == 2
+
+
 def test_a_file_that_has_grown_too_large_is_begun_anew(
     place: Path, monkeypatch: pytest.MonkeyPatch, parsed: list[str]
 ) -> None:
     found()
-    monkeypatch.setattr(kept_syntax, "_LARGEST", (place / NAME).stat().st_size)
+    monkeypatch.setattr(kept_syntax, "_LARGEST", (place / name()).stat().st_size)
     found(OTHER)  # now it is larger
     found(OTHER)
     assert parsed == [SOURCE.decode(), OTHER.decode(), OTHER.decode()]

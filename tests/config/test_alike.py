@@ -56,6 +56,14 @@ NEAR: list[dict[str, Any]] = [
         "scene.gap": {"start": "1 nm", "stop": "2 nm", "num": 300},
     },
 ]
+SHELL = {
+    "scene": {
+        "refractive_index": {"membrane": 1.46},
+        "cylinders": [
+            {"medium": "neuron", "shells": [{"medium": "membrane", "thickness": "20 nm"}]}
+        ],
+    },
+}
 
 
 @pytest.mark.parametrize("grid", NEAR)
@@ -75,6 +83,31 @@ def test_numbers_that_cost_about_the_same_are_counted_together(
 
         exact = sum(map(seconds, each))
         assert sum(count * seconds(one) for one, count in few) == pytest.approx(exact, rel=0.01)
+
+
+@pytest.mark.parametrize("scheme", ["vogel", "paths", "fullwave"])
+@pytest.mark.parametrize("indices", [[1.39, 1.391, 1.392], [1.392, 1.391, 1.39], [1.328, 1.33]])
+def test_an_index_that_another_medium_has_stands_for_no_other(
+    indices: list[float], scheme: str
+) -> None:
+    # between the two nothing is reflected, which takes less
+    grid = {"scene.refractive_index.membrane": indices}
+    config = load_config(SHELL, {"tracing": {"scheme": scheme}, "grid": grid})
+    each = [point_cost(at.config) for at in combinations(config)]
+    found = [(point_cost(one), count) for one, count in alike(config)]
+    assert sum(count * one.seconds for one, count in found) == pytest.approx(
+        sum(one.seconds for one in each), rel=0.01
+    )
+
+
+@pytest.mark.parametrize("grid", [*GRIDS, *NEAR])
+def test_what_stands_for_others_is_a_combination_itself(grid: dict[str, Any]) -> None:
+    config = load_config({"grid": grid})
+    for keys in ((), ("scene",), ("tracing", "sweep")):
+        texts = {str(at.config.to_dict()) for at in combinations(config, *keys)}
+        kinds = [one for one, _ in alike(config, *keys)]
+        if not {"scene.gap", "processing.window"} & grid.keys():  # else of what costs nothing
+            assert {str(one.to_dict()) for one in kinds} <= texts
 
 
 def test_combinations_that_differ_in_no_cost_are_one_kind() -> None:

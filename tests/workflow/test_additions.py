@@ -11,8 +11,6 @@ import xarray as xr
 import yaml
 from checkout import GIVEN, ROOT, TINY, merged
 
-from octsim.base.code_folder import places
-
 SCHEME = '''"""The light of the axial ray alone."""
 
 from octsim.optics.beam import vogel_beam
@@ -88,31 +86,32 @@ def checkout(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def run(checkout: Path, overlay: dict[str, object], *targets: str) -> None:
+def run(checkout: Path, overlay: dict[str, object], compiled: Path, *targets: str) -> None:
     file = checkout / "mine.yaml"
     file.write_text(yaml.safe_dump(overlay), encoding="utf-8")
     snakemake = [sys.executable, "-m", "snakemake", *targets, "--cores", "2"]
     command = [*snakemake, "--configfile", str(file)]
-    # code of sources that are the same need not be compiled again
-    environment = os.environ | {"PYTHONPATH": str(checkout), "NUMBA_CACHE_DIR": str(places()[0])}
+    environment = os.environ | {"PYTHONPATH": str(checkout), "NUMBA_CACHE_DIR": str(compiled)}
     done = subprocess.run(
         command, cwd=checkout, env=environment, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_a_scheme_is_a_row_and_a_module(checkout: Path) -> None:
+def test_a_scheme_is_a_row_and_a_module(checkout: Path, compiled: Path) -> None:
     (checkout / "octsim" / "schemes" / "axial.py").write_text(SCHEME, encoding="utf-8")
     table = checkout / "octsim" / "schemes" / "table.py"
     table.write_text(table.read_text(encoding="utf-8") + SCHEME_ROW, encoding="utf-8")
     overlay = merged(TINY, GIVEN, {"tracing": {"scheme": "axial"}})
-    run(checkout, overlay, "results/tiny/spectra.nc")
+    run(checkout, overlay, compiled, "results/tiny/spectra.nc")
     with xr.open_dataset(checkout / "results" / "tiny" / "spectra.nc") as spectra:
         # off the glass |r|², and from both sides of the neuron
         assert 0.001 < float(spectra["intensity"].mean()) < 0.02
 
 
-def test_a_stage_is_a_row_a_module_and_what_its_variables_mean(checkout: Path) -> None:
+def test_a_stage_is_a_row_a_module_and_what_its_variables_mean(
+    checkout: Path, compiled: Path
+) -> None:
     (checkout / "octsim" / "stages" / "brightest.py").write_text(STAGE, encoding="utf-8")
     catalog = checkout / "octsim" / "datasets" / "catalog.py"
     text = catalog.read_text(encoding="utf-8")
@@ -124,7 +123,7 @@ def test_a_stage_is_a_row_a_module_and_what_its_variables_mean(checkout: Path) -
     variables.write_text(
         text.replace('"centre": (', f'{meaning}\n    "centre": ('), encoding="utf-8"
     )
-    run(checkout, merged(TINY, GIVEN), "results/tiny/brightest.nc")
+    run(checkout, merged(TINY, GIVEN), compiled, "results/tiny/brightest.nc")
     folder = checkout / "results" / "tiny"
     with (
         xr.open_dataset(folder / "brightest.nc") as found,

@@ -43,7 +43,8 @@ def test_a_killed_run_resumes_to_the_same_bits(
     running.wait()
     checkout.run(TINY, *asked)
     assert checkout.datasets() == finished.checkout.datasets()
-    assert checkout.results() == finished.checkout.results() or asked
+    if not asked:
+        assert checkout.results() == finished.checkout.results()
     hidden = [p for p in (tmp_path / "results").rglob(".*") if p.name != ".lock"]
     assert len(hidden) <= 1  # at most the unfinished file of the moment
 

@@ -16,7 +16,6 @@ import yaml
 from checkout import DATASETS, GIVEN, GRID, ROOT, TINY, Checkout, Finished, counts, merged
 from edits import EDITS, EVERYTHING, edit_of
 
-from octsim.base.code_folder import places
 from octsim.config.known_keys import known_keys
 from octsim.config.models import Config
 from octsim.datasets.gallery import CAPTIONS, FORMS
@@ -181,14 +180,14 @@ def test_an_edit_reruns_only_what_reads_the_key(key: str, law: Checkout, given: 
 
 @pytest.mark.trial
 def test_comments_and_formatting_of_the_sources_rerun_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, compiled: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     checkout = Checkout(tmp_path)
     shutil.copytree(
         ROOT / "octsim", tmp_path / "octsim", ignore=shutil.ignore_patterns("__pycache__")
     )
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(places()[0]))  # of the same sources it is the same
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(compiled))
     checkout.run(TINY, "--until", "focus_law")
     untouched = {"focus_scan", "detections", "spectra", "phase_slope", "figures"}
     source = tmp_path / "octsim" / "stages" / "gaussian_fits.py"
