@@ -17,10 +17,13 @@ import pytest
 import yaml
 from checkout import GRID, TINY, Checkout, counts, merged
 from cluster import Cluster, ClusterError, cluster
+from made_once import Once
 
 pytestmark = pytest.mark.skipif(
     "OCTSIM_SLURM" not in os.environ, reason="OCTSIM_SLURM is not set; run by `make test-slurm`"
 )
+TOGETHER = pytest.mark.xdist_group("troubled")
+"""Tests of one run are of one worker; the others have a Slurm of their own, as most is waiting."""
 # about what a job takes: the next looks at it come ten seconds later each
 SOON = ("--cores", "2", "--slurm-init-seconds-before-status-checks", "12")
 PROFILE = ("--workflow-profile", "profiles/slurm", *SOON)
@@ -113,10 +116,16 @@ def caught(checkout: Checkout, slurm: Mapping[str, str], *files: str) -> str:
 
 
 @pytest.fixture(scope="module")
-def local(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+def local(once: Once) -> dict[str, bytes]:
+    return once.made("on_cores", on_cores)
+
+
+def on_cores(folder: Path) -> dict[str, bytes]:
+    """Return what a run on one core makes, and one on two."""
     found = []
     for cores in ("1", "2"):
-        checkout = Checkout(tmp_path_factory.mktemp(f"cores{cores}"))
+        (folder / cores).mkdir()
+        checkout = Checkout(folder / cores)
         checkout.run(TINY, "--cores", cores)
         found.append(checkout.results())
     assert found[0] == found[1]
@@ -146,12 +155,14 @@ def slurm_logs(checkout: Checkout, stage: str) -> list[str]:
     return [file.read_text() for file in sorted(logs.rglob("*.log"))]
 
 
+@TOGETHER
 def test_a_run_on_slurm_has_the_bits_of_a_local_one_on_one_core_and_on_two(
     troubled: tuple[Checkout, str], local: dict[str, bytes]
 ) -> None:
     assert troubled[0].results() == local
 
 
+@TOGETHER
 @pytest.mark.parametrize(
     ("stage", "said", "state"),
     [
