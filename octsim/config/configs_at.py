@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
-from octsim.config.derive import config_at, merge, nested, overlaid, part_of
+from octsim.config.derive import config_at, nested, nested_all, overlaid, part_of
 from octsim.config.fields import Section
 from octsim.config.models import Config
 
@@ -86,10 +86,7 @@ class ConfigsAt:
         plain = self._at(place)
         if not divided.other and not _checks_parts(type(plain)):
             return plain.model_copy(update=parts)
-        laid: dict[str, Any] = {}
-        for key in divided.other:
-            laid = merge(laid, nested(key, values[key]))
-        name = ".".join(place)
+        name, laid = ".".join(place), nested_all({key: values[key] for key in divided.other})
         given = part_of(overlaid(nested(name, part_of(self._base, name)), laid), name)
         checked = plain.model_validate({**given, **parts} if isinstance(given, Mapping) else given)
         # of tuples checking makes others, and a section that checks its parts may change them

@@ -1,5 +1,7 @@
 """Configs as plain data: what stands under dotted keys, and configs made from others."""
 
+import functools
+import itertools
 from collections.abc import Mapping
 from typing import Any
 
@@ -65,6 +67,11 @@ def nested(key: str, value: object) -> dict[str, Any]:
     return {first: nested(rest, value) if rest else value}
 
 
+def nested_all(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the overlay that sets some dotted keys."""
+    return functools.reduce(merge, itertools.starmap(nested, values.items()), {})
+
+
 def merge(base: Mapping[str, Any], overlay: Mapping[str, Any]) -> dict[str, Any]:
     """Lay one mapping over another: mappings merge deeply, everything else replaces.
 
@@ -118,10 +125,7 @@ def config_at(base: Mapping[str, Any], values: Mapping[str, Any]) -> Config:
     ValidationError
         If a value is wrong.
     """
-    laid: dict[str, Any] = {}
-    for key, value in values.items():
-        laid = merge(laid, nested(key, value))
-    return Config.model_validate(overlaid(base, laid))
+    return Config.model_validate(overlaid(base, nested_all(values)))
 
 
 def changed(config: Config, *overlays: Mapping[str, Any]) -> Config:
