@@ -104,7 +104,7 @@ slurm: .venv/slurm
 	touch $@
 
 test-slurm: .venv/dev .venv/slurm
-	OCTSIM_SLURM=1 $(BIN)/pytest -n 4 --dist loadgroup tests/workflow/test_slurm.py tests/workflow/test_scheduler.py
+	OCTSIM_SLURM=1 $(BIN)/pytest -n 4 --dist worksteal tests/workflow/test_slurm.py tests/workflow/test_scheduler.py
 
 bench-slurm: .venv/dev .venv/slurm
 	$(BIN)/python benchmarks/slurm.py

@@ -58,6 +58,16 @@ class Checkout:
         table = done.stdout.split("Job stats:")[1].split("total")[0].splitlines()[3:]
         return {line.split()[0] for line in table if line.strip()} - {"all"}
 
+    def at_start(self, stage: str, statement: str) -> None:
+        """Make a stage's job do something before its work."""
+        script = self.folder / "workflow" / "scripts" / "job.py"
+        name = "snakemake.wildcards.get('stage', Path(snakemake.log[0]).stem)"
+        before, work = script.read_text().split("status = ask(task)")
+        script.write_text(
+            f"{before}if {name} == '{stage}':\n    import time; from octsim.cli import job\n"
+            f"    job.end_with_the_run(Path(task['folder'])); {statement}\nstatus = ask(task){work}"
+        )
+
     def results(self) -> dict[str, bytes]:
         folder = self.folder / "results"
         return {

@@ -50,18 +50,24 @@ def test_a_killed_run_resumes_to_the_same_bits(
 
 
 def test_a_second_run_of_the_same_name_is_refused_and_another_is_not(tmp_path: Path) -> None:
-    checkout = Checkout(tmp_path)
-    first = start(checkout, *DATASETS)
-    lock = tmp_path / "results" / "tiny" / ".lock"
-    while not lock.exists() and first.poll() is None:
+    checkout, one = Checkout(tmp_path), "focus_scan"
+    waits, goes_on = tmp_path / "waits", tmp_path / "goes_on"
+    checkout.at_start(
+        one,
+        "goes_on = lambda: 'tiny' not in snakemake.output[0] or Path('goes_on').exists()\n"
+        "    Path('waits').touch(); [time.sleep(0.1) for _ in iter(goes_on, True)]",
+    )
+    first = start(checkout, "--until", one)
+    while not waits.exists() and first.poll() is None:
         time.sleep(0.02)
-    second = checkout.snakemake(TINY, *DATASETS)
-    other = checkout.snakemake({**TINY, "run": "other"}, *DATASETS)
+    second = checkout.snakemake(TINY, "--until", one)
+    other = checkout.snakemake({**TINY, "run": "other"}, "--until", one)
+    goes_on.touch()
     assert first.wait() == 0
     assert second.returncode != 0
     assert "octsim: another run is at work on results/tiny" in second.stderr
     assert other.returncode == 0, other.stderr
-    assert len(checkout.results()) == 2 * 9
+    assert set(checkout.results()) == {"tiny/focus_scan.nc", "other/focus_scan.nc"}
 
 
 def test_a_results_folder_that_is_none_is_one_line(tmp_path: Path) -> None:

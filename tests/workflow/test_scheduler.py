@@ -11,6 +11,7 @@ from typing import NamedTuple
 import pytest
 import yaml
 from checkout import Checkout, scattered
+from made_once import Once
 from scheduler import asked, scheduler
 
 pytest.importorskip("snakemake_executor_plugin_slurm", reason="it comes by `make slurm`")
@@ -31,8 +32,14 @@ class Ran(NamedTuple):
 
 
 @pytest.fixture(scope="module")
-def ran(tmp_path_factory: pytest.TempPathFactory) -> Ran:
-    folder, commands = tmp_path_factory.mktemp("run"), tmp_path_factory.mktemp("commands")
+def ran(once: Once) -> Ran:
+    return once.made("ran", ran_in)
+
+
+def ran_in(place: Path) -> Ran:
+    folder, commands = place / "run", place / "commands"
+    for one in (folder, commands):
+        one.mkdir()
     Checkout(folder)
     (folder / "mine.yaml").write_text(yaml.safe_dump(scattered(SHARES)), encoding="utf-8")
     command = [
