@@ -23,6 +23,13 @@ from octsim.stages.gaussian_fits import FitStatus
 
 FIGURES = all_run_figures()
 IMAGES = [form for form in FORMS if form != "txt"]
+# curves, panels, a drawing and an image: the others, drawn alike, are compared in one form
+EACH = {"figure_12", "paths", "scene", "grid"}
+CASES = [
+    pytest.param(name, form, marks=[] if name in EACH or form == "svg" else pytest.mark.trial)
+    for name in FIGURES
+    for form in IMAGES
+]
 GRID = {"processing.window": ["hann", "hamming"], "processing.centre": ["mean", "midpoint"]}
 
 
@@ -32,18 +39,16 @@ def over_grid(stages: dict[str, xr.Dataset]) -> xr.Dataset:
     return octsim.phase_slope(config, octsim.fourier(config, stages["spectra"]))
 
 
-@pytest.mark.parametrize("name", FIGURES)
+@pytest.mark.parametrize(("name", "form"), CASES)
 def test_a_figure_is_the_same_bytes_each_time_and_has_units(
-    name: str, stages: dict[str, xr.Dataset], over_grid: xr.Dataset, tmp_path: Path
+    name: str, form: str, stages: dict[str, xr.Dataset], over_grid: xr.Dataset, tmp_path: Path
 ) -> None:
     for copy in ("a", "b"):
         with look():
             given = stages | {"phase_slope": over_grid} if name == "grid" else stages
             figure = figure_of(FIGURES[name], given, Processing())
-            for form in IMAGES:
-                save(figure, tmp_path / f"{copy}.{form}")
-    for form in IMAGES:
-        assert (tmp_path / f"a.{form}").read_bytes() == (tmp_path / f"b.{form}").read_bytes()
+            save(figure, tmp_path / f"{copy}.{form}")
+    assert (tmp_path / f"a.{form}").read_bytes() == (tmp_path / f"b.{form}").read_bytes()
     labels = {text for axes in figure.axes for text in (axes.get_xlabel(), axes.get_ylabel())}
     assert labels - {""} == LABELS[name]
 
@@ -85,8 +90,8 @@ def longer(dataset: xr.Dataset, axis: str, count: int) -> xr.Dataset:
         ("figure_6", "focus"),
         ("figure_7", "diameter"),
         ("figure_8", "wavenumber"),
-        ("figure_10", "diameter"),
-        ("figure_11", "diameter"),
+        pytest.param("figure_10", "diameter", marks=pytest.mark.trial),
+        pytest.param("figure_11", "diameter", marks=pytest.mark.trial),
         ("figure_12", "diameter"),
         ("paths", "diameter"),
         ("grid", "window"),
