@@ -30,7 +30,8 @@ SMALL = load_config({
         "diameters": {"start": "1.2 um", "stop": "1.3 um", "num": 6},
         "focus": {"slope": 0.58, "intercept": "66 nm"},
     },
-    "calibration": {"diameters": {"num": 8}},
+    # light paths, and for each slope beside theirs counted rays and waves
+    "calibration": {"diameters": {"num": 8}, "scheme": "paths"},
 })  # fmt: skip
 MEASURED_ANEW = {
     "cpu_seconds", "peak_memory", "estimator_seconds", "phase_slope_frontier",
