@@ -1,5 +1,6 @@
 """What each effect changes: known changes, what the config has, the noise, pairs, the sentence."""
 
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -163,14 +164,20 @@ def test_what_the_config_has_is_switched_off() -> None:
     }  # fmt: skip
 
 
+@cache
+def plainly(scheme: str) -> dict[str, Variant]:
+    """Return the variants of the thesis's config by a scheme."""
+    return by_name(run(scheme))
+
+
 @pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.name)
 def test_every_kind_that_is_on_is_switched_off(effect: Any) -> None:
     scheme = next(
-        (name for name in ("vogel", "fullwave") if by_name(run(name))[effect.name].measured), None
+        (name for name in ("vogel", "fullwave") if plainly(name)[effect.name].measured), None
     )
     if scheme is None or effect.kind in ("focus", "detector radius"):
         return
-    on = by_name(run(scheme))[effect.name].with_effect
+    on = plainly(scheme)[effect.name].with_effect
     if effect.name != "uniform pupil":
         assert is_on(on, effect.kind)
         off = by_name(on)[f"{effect.kind} as configured"].without_effect
