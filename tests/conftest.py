@@ -3,7 +3,8 @@
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -11,11 +12,12 @@ import xarray as xr
 from checkout import Finished, finished_in
 from hypothesis import settings
 from made_once import Once
-from made_runs import SWEEP, WHOLE, every_stage
+from made_runs import SWEEP, WHOLE, every_stage, few_parameters
 
 import octsim
 from octsim.base.code_folder import places
 from octsim.config.load import load_config
+from octsim.studies.calibration import parameters, scheme
 from octsim.studies.calibration.study import calibration
 
 # The same draws every time: a failure on a contributor's machine is a failure on every machine.
@@ -87,6 +89,7 @@ def finished(once: Once) -> Finished:
 
 
 CALIBRATED = {
+    "spectrum": {"samples": 250},  # of less than three fringes
     "sweep": {"focus": {"slope": 0.58, "intercept": "66 nm"}},
     "calibration": {"diameters": {"start": "1.32 um", "stop": "1.46 um", "num": 8}},
 }
@@ -99,13 +102,31 @@ BY_RAYS = {
 }
 
 
+# those that tests look at, and those that light paths don't see: each takes 16 spectra a diameter
+SEEN = few_parameters(
+    "diameter", "gap", "neuron", "focus", "numerical_aperture", "fill", "polarisation", "offset"
+)
+# slopes are the same to 1e-6 mrad/nm as with a tenth of it, which takes much longer
+REACHED = {**scheme.ACCURACY, "fullwave": 1e-5}
+
+
+@contextmanager
+def as_calibrated() -> Iterator[None]:
+    """Have studies use the parameters and the accuracy of the fixture `calibrated`."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(parameters, "PARAMETERS", SEEN)
+        patch.setattr(scheme, "ACCURACY", REACHED)
+        yield
+
+
 @pytest.fixture(scope="session")
 def calibrated(once: Once) -> xr.Dataset:
     """Calibrate the thesis's instrument at a few diameters, focused by a given law."""
-    return once.made("calibrated", lambda _: calibration(load_config(CALIBRATED), None, 2))
+    with as_calibrated():
+        return once.made("calibrated", lambda _: calibration(load_config(CALIBRATED), None, 2))
 
 
 @pytest.fixture(scope="session")
 def calibrated_by_rays(once: Once) -> xr.Dataset:
-    """Calibrate it by light paths, over more diameters."""
+    """Calibrate it by light paths with every parameter, over more diameters."""
     return once.made("calibrated_by_rays", lambda _: calibration(load_config(BY_RAYS), None, 2))

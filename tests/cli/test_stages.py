@@ -23,6 +23,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, calibrated: xr.Datas
 
     monkeypatch.setattr(in_memory, "_make", made)
     (tmp_path / "mine.yaml").write_text(
+        "spectrum: {samples: 250}\n"
         "sweep: {focus: {slope: 0.58, intercept: 66 nm}}\n"
         "calibration: {diameters: {start: 1.32 um, stop: 1.46 um, num: 8}}\n"
         "expansion: {rest: 4}\n"

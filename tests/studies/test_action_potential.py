@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from conftest import CALIBRATED
+from conftest import CALIBRATED, as_calibrated
 from missing import unexplained
 
 from octsim.config.load import load_config
@@ -33,8 +33,9 @@ def test_the_stated_error_covers_the_truth_as_often_as_one_sigma_should(
     calibrated: xr.Dataset, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(round_trips, "TRIALS", 24)
-    config = load_config(CALIBRATED)
-    fired = action_potential(config, calibrated, None, 2)
+    config = load_config(CALIBRATED, {"spectrum": {"samples": 1000}})
+    with as_calibrated():
+        fired = action_potential(config, calibrated, None, 2)
     assert fired["trip_expansion"].shape == (5, 24)
     assert 0.60 <= float(fired["coverage_noise"].mean()) <= 0.76
     # what is not known of an instrument moves the slope by no normal deviate, as that bends over

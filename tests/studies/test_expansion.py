@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from conftest import CALIBRATED
 from missing import unexplained
 from numpy.typing import NDArray
 
@@ -36,7 +37,6 @@ from octsim.studies.calibration.sensitivity import LARGEST, sensitivity_at
 Array = NDArray[np.float64]
 ROOT = Path(__file__).parents[2]
 SLOPE, ERROR, CURVATURE = 24.0, 0.24, -0.02
-LAW = {"sweep": {"focus": {"slope": 0.58, "intercept": "66 nm"}}}
 
 
 @pytest.fixture
@@ -323,7 +323,7 @@ def test_a_figure_marks_the_outliers(table: xr.Dataset) -> None:
 def test_the_phase_of_a_thicker_neuron_gives_its_thickness(
     calibrated: xr.Dataset, change: float
 ) -> None:
-    config = load_config(LAW)
+    config = load_config(CALIBRATED)
     focus, k = 0.58 * 1.4 + 0.066, config.spectrum.wavenumbers()
     spectra = Instrument(converged(config)).spectra((1.4, 1.4 + change / 1e3), (focus, focus))
     rest, moved = series_phases(

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from conftest import CALIBRATED
+from conftest import CALIBRATED, as_calibrated
 from missing import unexplained
 from numpy.typing import NDArray
 
@@ -57,7 +57,8 @@ def table(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
     """Give the responses of the thesis's neuron at two diameters, as they are read from a file."""
     file = tmp_path_factory.mktemp("responses") / "responses.nc"
     config = load_config(FEW)
-    write(responses(config, None, 2), file)
+    with as_calibrated():
+        write(responses(config, None, 2), file)
     return read(file, "responses", config)
 
 
@@ -68,7 +69,8 @@ def thick(table: xr.Dataset) -> xr.Dataset:
 
 @pytest.fixture(scope="module")
 def bare() -> Config:
-    return converged(load_config(FEW))
+    with as_calibrated():
+        return converged(load_config(FEW))
 
 
 def spectrum_of(config: Config, diameter: float = DIAMETER, **overlay: Any) -> Array:
