@@ -22,6 +22,6 @@ def plain(stages: dict[str, xr.Dataset], once: Once) -> Path:
 
 
 @pytest.fixture(scope="session")
-def full(once: Once) -> Path:
+def full(once: Once, calibrated: xr.Dataset) -> Path:
     """Write a run with everything beside it that a report shows, and its report."""
-    return once.made("full", lambda folder: reported(full_run(folder / "looked")))
+    return once.made("full", lambda folder: reported(full_run(folder / "looked", calibrated)))
