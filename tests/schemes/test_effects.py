@@ -51,7 +51,8 @@ def able(scheme: str, overlay: dict[str, Any]) -> bool:
 @pytest.mark.parametrize("name", EVERY)
 def test_counted_rays_are_those_of_a_literal_tracer(name: str) -> None:
     case = EVERY[name]
-    found = instrument("vogel", case.overlay, rays=300)
+    # each wavenumber is traced for itself, so that a few are as sharp as many
+    found = instrument("vogel", case.overlay, samples=4, rays=300)
     expected = intensity(
         Setup(rays=300, diameter=DIAMETER, focus=FOCUS, **case.literal), found.wavenumber
     )
