@@ -52,7 +52,8 @@ def of(spectra: Array, unit: str = "um-1") -> xr.Dataset:
 @pytest.mark.parametrize("kind", ["normal", "counts"])
 @pytest.mark.parametrize("name", ASKED)
 def test_standard_errors_are_the_scatter_of_noisy_spectra(name: str, kind: str) -> None:
-    random, runs = np.random.default_rng(11), 250
+    fitted = "sinusoid" in str(ASKED[name])
+    random, runs = np.random.default_rng(11), 250 if fitted else 100
     spectra = fringe() + 0.05 * random.normal(size=(runs, K.size))
     if kind == "counts":
         spectra = random.poisson(np.broadcast_to(60 * fringe(), (runs, K.size))).astype(float)
@@ -62,8 +63,8 @@ def test_standard_errors_are_the_scatter_of_noisy_spectra(name: str, kind: str) 
     mean = np.angle(np.exp(1j * found.phase).mean())
     scatter = np.sqrt((wrapped(found.phase - mean) ** 2).mean())
     stated = np.sqrt((found.phase_standard_error**2).mean())
-    # draws know it to 12 %, runs to 4.5 %
-    assert stated == pytest.approx(scatter, rel=0.15 if "sinusoid" in str(ASKED[name]) else 0.35)
+    # draws, of what is not fitted, know it to 12 %, and runs to 7 %; 250 runs to 4.5 %
+    assert stated == pytest.approx(scatter, rel=0.15 if fitted else 0.35)
     moved = found.depth.std()
     if np.isnan(found.depth_standard_error).any():
         assert moved < 1e-12  # it is given
