@@ -1,6 +1,7 @@
 """The literal tracer of effects against the thesis's literal tracer, and against closed forms."""
 
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -11,8 +12,14 @@ from literal_effects_lens import lp01, noll, zernike
 from numpy.typing import NDArray
 
 Array = NDArray[Any]
-BAND = np.linspace(2 * np.pi / 0.9, 2 * np.pi / 0.65, 7)
+# each wavenumber is done anew, so that three are as sharp as many
+BAND = np.linspace(2 * np.pi / 0.9, 2 * np.pi / 0.65, 3)
 MIRROR = Setup(neuron=1.33, focus=0.0)  # the bare plane, in the focus
+
+
+@cache
+def of_the_thesis() -> Array:
+    return intensity(Setup(), BAND)
 
 
 def rings(number: int) -> Array:
@@ -71,7 +78,7 @@ OFF: list[dict[str, Any]] = [
 
 @pytest.mark.parametrize("effect", OFF, ids=lambda given: ", ".join(given))
 def test_an_effect_of_no_size_changes_nothing(effect: dict[str, Any]) -> None:
-    assert intensity(Setup(**effect), BAND) == pytest.approx(intensity(Setup(), BAND), rel=1e-11)
+    assert intensity(Setup(**effect), BAND) == pytest.approx(of_the_thesis(), rel=1e-11)
 
 
 def test_indices_and_focus_are_those_of_each_wavenumber() -> None:
@@ -264,7 +271,7 @@ def test_rulings_leave_a_mirrored_scene_mirrored(effect: dict[str, Any]) -> None
 def test_every_falloff_is_one_on_the_axis(falloff: Any) -> None:
     expected = intensity(Setup(rays=1), BAND)
     assert intensity(Setup(rays=1, falloff=falloff), BAND) == pytest.approx(expected, rel=1e-12)
-    assert np.max(np.abs(intensity(Setup(falloff=falloff), BAND) - intensity(Setup(), BAND))) > 0
+    assert np.max(np.abs(intensity(Setup(falloff=falloff), BAND) - of_the_thesis())) > 0
 
 
 def test_the_fibres_mode_solves_its_equation() -> None:
