@@ -450,20 +450,20 @@ def test_an_estimate_is_printed_first_and_a_large_run_wants_to_be_confirmed(tmp_
 def test_points_are_kept_for_other_runs_and_for_going_back(tmp_path: Path) -> None:
     checkout = Checkout(tmp_path)
     start = merged(TINY, GIVEN)
-    stages = ("--until", "focus_scan", "focus_law", "phase_slope")
+    stages = ("--until", "focus_scan", "detections")
     checkout.run(start, *stages)
     shutil.rmtree(tmp_path / "results")
     shutil.rmtree(tmp_path / ".snakemake")
     for overlay, traced in (
         (merged(start, {"run": "other", "spectrum": {"wavelength": {"min": "700 nm"}}}), 0),
         (merged(start, {"sweep": {"diameters": {"num": 17}}}), 8),
-        (merged(start, {"scene": {"gap": "6 nm"}}), 41),
+        (merged(start, {"scene": {"gap": "6 nm"}}), 14),
         (start, 0),
     ):
         checkout.run(overlay, *stages)
         found = counts(checkout, overlay["run"])
         assert sum(one["points_traced"] for one in found.values()) == traced
-        assert sum(sum(one.values()) for one in found.values()) == (49 if traced == 8 else 41)
+        assert sum(sum(one.values()) for one in found.values()) == (22 if traced == 8 else 14)
 
 
 @pytest.mark.trial
