@@ -49,9 +49,9 @@ class Checkout:
         done = self.snakemake(overlay, *arguments)
         assert done.returncode == 0, done.stdout + done.stderr
 
-    def would_run(self, overlay: dict[str, Any]) -> set[str]:
+    def would_run(self, overlay: dict[str, Any], *arguments: str) -> set[str]:
         """Rules that a run would execute now."""
-        done = self.snakemake(overlay, "--dry-run")
+        done = self.snakemake(overlay, "--dry-run", *arguments)
         assert done.returncode == 0, done.stdout + done.stderr
         if "Job stats:" not in done.stdout:
             return set()

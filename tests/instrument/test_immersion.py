@@ -16,7 +16,7 @@ SLIDE = {"medium": "glass", "thickness": f"{THICK} um"}
 def scan(overlay: dict[str, Any], start: float, stop: float) -> tuple[Any, Any]:
     config = merge(
         {
-            "tracing": {"scheme": "paths", "accuracy": 1e-4},
+            "tracing": {"rays": 5000},
             "objective": {"numerical_aperture": APERTURE},
             "scene": {"refractive_index": {"oil": OIL}},
             "sweep": {"diameters": {"start": "1.4 um", "stop": "1.5 um", "num": 2}},

@@ -52,7 +52,7 @@ def test_only_new_diameters_are_traced(
     assert count(scheme, sweep(301)) == (0, 301)
 
 
-@pytest.mark.parametrize("scheme", [{}, PATHS])
+@pytest.mark.parametrize("scheme", [{}, pytest.param(PATHS, marks=pytest.mark.trial)])
 def test_another_attenuation_traces_nothing(
     scheme: dict[str, Any], count: Callable[..., tuple[int, int]]
 ) -> None:

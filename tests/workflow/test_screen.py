@@ -124,9 +124,10 @@ def test_a_pipe_gets_lines_alone_and_quiet_is_quiet(first: tuple[Path, Terminal]
     (folder / "results" / "tiny" / "fourier.nc").unlink()
     lines = piped(folder, "phase_slope").stderr.splitlines()
     assert lines[0] == "octsim: remaking phase_slope, as octsim or a file has changed"
-    quiet = piped(folder, "--quiet")
+    again = ("--", "--forcerun", "phase_slope")
+    quiet = piped(folder, "phase_slope", "--quiet", *again)
     assert (quiet.returncode, quiet.stdout, quiet.stderr) == (0, "", "")
-    assert "Job stats:" in piped(folder, "--verbose", "--", "--forcerun", "figures").stderr
+    assert "Job stats:" in piped(folder, "phase_slope", "--verbose", *again).stderr
 
 
 def test_a_config_error_is_the_whole_screen(tmp_path: Path) -> None:

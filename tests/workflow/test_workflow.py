@@ -35,7 +35,7 @@ def law(finished: Finished, tmp_path_factory: pytest.TempPathFactory) -> Checkou
 @pytest.fixture(scope="module")
 def given(tmp_path_factory: pytest.TempPathFactory) -> Checkout:
     checkout = Checkout(tmp_path_factory.mktemp("given"))
-    checkout.run(merged(TINY, GIVEN))
+    checkout.run(merged(TINY, GIVEN), *DATASETS)
     return checkout
 
 
@@ -178,7 +178,8 @@ def test_keys_of_other_targets_rerun_nothing_of_a_run(law: Checkout) -> None:
 def test_an_edit_reruns_only_what_reads_the_key(key: str, law: Checkout, given: Checkout) -> None:
     _, with_law, with_focus = EDITS[key]
     assert law.would_run(merged(TINY, edit_of(key))) == with_law
-    assert given.would_run(merged(TINY, GIVEN, edit_of(key))) == with_focus
+    overlay = merged(TINY, GIVEN, edit_of(key))
+    assert given.would_run(overlay, *DATASETS) == with_focus - {"figures"}
 
 
 @pytest.mark.trial
@@ -295,8 +296,8 @@ def test_a_name_that_reads_as_a_number_is_taken_as_the_line_says(name: str, tmp_
 
 def test_every_run_has_its_own_folder_and_the_same_bits(law: Checkout, tmp_path: Path) -> None:
     checkout = Checkout(tmp_path)
-    checkout.run(TINY, "--cores", "1")
-    assert checkout.results() == law.results()
+    checkout.run(TINY, "--cores", "1", *DATASETS)
+    assert checkout.datasets() == law.datasets()
 
 
 def test_an_archive_is_packed_when_something_of_it_has_changed(law: Checkout) -> None:
