@@ -36,9 +36,9 @@ export GIVEN_FILE := $(value FILE)
 export GIVEN_INTO := $(value INTO)
 
 # a module's tests stay together, so that what they share is made once
-# tests of runs wait for much of their time, so that three at once fill two cores; threads of
+# tests of runs wait for much of their time, so that four at once fill two cores; threads of
 # OpenBLAS that wait for a core would keep it busy
-TESTS = OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 3 --dist loadscope --no-loadscope-reorder
+TESTS = OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -n 4 --dist loadscope --no-loadscope-reorder
 
 .PHONY: results archive reproduce test test-all test-processors test-pythons lint format docs site bench \
 	bench-sweeps bench-growth bench-peers kills soak mutants lock slurm test-slurm bench-slurm \

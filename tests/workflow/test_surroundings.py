@@ -27,7 +27,13 @@ def own_environment(folder: Path) -> Path:
     return folder / ".venv" / "bin" / "python"
 
 
-@pytest.mark.parametrize("name", ["it's {mine} #1", '%20 "$HOME" [µm]*', "new\nline"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "it's {mine} #1",
+        *(pytest.param(one, marks=pytest.mark.trial) for one in ('%20 "$HOME" [µm]*', "new\nline")),
+    ],
+)
 def test_a_run_works_in_a_folder_of_any_name(name: str, tmp_path: Path) -> None:
     folder = tmp_path / name
     folder.mkdir()
