@@ -35,7 +35,9 @@ def anew() -> None:
 
 def run(folder: Path, kept: Path, code: str = WORK, **environment: str) -> "subprocess.Popen[str]":
     (folder / "kernel.py").write_text(KERNEL, encoding="utf-8")
-    own = {"NUMBA_CACHE_DIR": str(kept), "PYTHONPATH": str(folder), **environment}
+    # Python's own code of a file goes by its time and size, too
+    plain = {"PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": str(folder)}
+    own = {"NUMBA_CACHE_DIR": str(kept), **plain, **environment}
     return subprocess.Popen(
         [sys.executable, "-c", code], env=os.environ | own, text=True,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE,

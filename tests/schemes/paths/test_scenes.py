@@ -87,13 +87,8 @@ def test_many_counted_rays_come_to_the_same(name: str) -> None:
     assert off(found.intensity, rays.intensity) <= rays.error + found.error <= 0.01
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "turned",
-        *(pytest.param(name, marks=pytest.mark.trial) for name in ("myelin", "cover glass")),
-    ],
-)
+@pytest.mark.trial
+@pytest.mark.parametrize("name", ["myelin", "turned", "cover glass"])
 def test_effects_on_light_are_those_of_counted_rays(name: str) -> None:
     overlay = merge(SMOOTH[name], LIGHT)
     found = spectrum("paths", overlay, accuracy=1e-5)
