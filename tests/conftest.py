@@ -3,8 +3,7 @@
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -12,12 +11,11 @@ import xarray as xr
 from checkout import Finished, finished_in
 from hypothesis import settings
 from made_once import Once
-from made_runs import SWEEP, WHOLE, every_stage, few_parameters
+from made_runs import BY_RAYS, CALIBRATED, SWEEP, WHOLE, as_calibrated, every_stage
 
 import octsim
 from octsim.base.code_folder import places
 from octsim.config.load import load_config
-from octsim.studies.calibration import parameters, scheme
 from octsim.studies.calibration.study import calibration
 
 # The same draws every time: a failure on a contributor's machine is a failure on every machine.
@@ -86,37 +84,6 @@ def spectra(once: Once) -> xr.Dataset:
 def finished(once: Once) -> Finished:
     """Give the folder of a whole run by snakemake; tests change copies of it."""
     return once.made("finished", finished_in)
-
-
-CALIBRATED = {
-    "spectrum": {"samples": 250},  # of less than three fringes
-    "sweep": {"focus": {"slope": 0.58, "intercept": "66 nm"}},
-    "calibration": {"diameters": {"start": "1.32 um", "stop": "1.46 um", "num": 8}},
-}
-BY_RAYS = {
-    **CALIBRATED,
-    "calibration": {
-        "diameters": {"start": "1.1 um", "stop": "1.8 um", "num": 8},
-        "scheme": "paths",
-    },
-}
-
-
-# those that tests look at, and those that light paths don't see: each takes 16 spectra a diameter
-SEEN = few_parameters(
-    "diameter", "gap", "neuron", "focus", "numerical_aperture", "fill", "polarisation", "offset"
-)
-# the slope at 1.4 um is the same to 1e-6 mrad/nm from 1e-4 on; 1e-6 takes three times as long
-REACHED = {**scheme.ACCURACY, "fullwave": 1e-5}
-
-
-@contextmanager
-def as_calibrated() -> Iterator[None]:
-    """Have studies use the parameters and the accuracy of the fixture `calibrated`."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(parameters, "PARAMETERS", SEEN)
-        patch.setattr(scheme, "ACCURACY", REACHED)
-        yield
 
 
 @pytest.fixture(scope="session")

@@ -1,12 +1,16 @@
 """Small runs, made in memory or written to a folder."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
+import pytest
 import xarray as xr
 
 import octsim
 from octsim.datasets.files import write
 from octsim.datasets.keys import stages_of
+from octsim.studies.calibration import parameters, scheme
 from octsim.studies.calibration.parameter import Parameter
 from octsim.studies.calibration.parameters import PARAMETERS
 
@@ -43,6 +47,37 @@ def few_parameters(*names: str) -> dict[str, Parameter]:
         name: one if name in names else one._replace(counts=lambda _: False)
         for name, one in PARAMETERS.items()
     }
+
+
+CALIBRATED = {
+    "spectrum": {"samples": 250},  # of less than three fringes
+    "sweep": {"focus": {"slope": 0.58, "intercept": "66 nm"}},
+    "calibration": {"diameters": {"start": "1.32 um", "stop": "1.46 um", "num": 8}},
+}
+BY_RAYS = {
+    **CALIBRATED,
+    "calibration": {
+        "diameters": {"start": "1.1 um", "stop": "1.8 um", "num": 8},
+        "scheme": "paths",
+    },
+}
+
+
+# those that tests look at, and those that light paths don't see: each takes 16 spectra a diameter
+SEEN = few_parameters(
+    "diameter", "gap", "neuron", "focus", "numerical_aperture", "fill", "polarisation", "offset"
+)
+# the slope at 1.4 um is the same to 1e-6 mrad/nm from 1e-4 on; 1e-6 takes three times as long
+REACHED = {**scheme.ACCURACY, "fullwave": 1e-5}
+
+
+@contextmanager
+def as_calibrated() -> Iterator[None]:
+    """Have studies use the parameters and the accuracy of the fixture `calibrated`."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(parameters, "PARAMETERS", SEEN)
+        patch.setattr(scheme, "ACCURACY", REACHED)
+        yield
 
 
 def make(folder: Path, *overlays: dict[str, object], scan: bool = True) -> octsim.Config:

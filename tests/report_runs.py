@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from conftest import CALIBRATED
-from made_runs import every_stage
+from made_runs import CALIBRATED, every_stage
 
 import octsim
 from octsim.config.load import load_config

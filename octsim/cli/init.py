@@ -144,7 +144,7 @@ def _checked(run: str, answers: Mapping[str, tuple[str, ...]]) -> tuple[Any, lis
     """
     import yaml
 
-    from octsim.config.derive import merge, nested
+    from octsim.config.derive import merge, nested_all
     from octsim.config.load import load_and_tell
 
     overlay: dict[str, Any] = {
@@ -153,14 +153,14 @@ def _checked(run: str, answers: Mapping[str, tuple[str, ...]]) -> tuple[Any, lis
         "focus_scan": {"diameter": None, "focus": None},
         "calibration": {"diameters": None},
     }
+    values: dict[str, Any] = {}
     for name, answer in answers.items():
         for key, text in zip(_QUESTIONS[name].keys, answer, strict=True):
             try:
-                value = yaml.safe_load(text)
+                values[key] = yaml.safe_load(text)
             except yaml.YAMLError:
-                value = text
-            overlay = merge(overlay, nested(key, value))
-    return load_and_tell(overlay)
+                values[key] = text
+    return load_and_tell(merge(overlay, nested_all(values)))
 
 
 def _written(file: Path, run: str, answers: Mapping[str, tuple[str, ...]]) -> str:

@@ -5,6 +5,8 @@ from typing import Any
 
 import pytest
 import xarray as xr
+import yaml
+from made_runs import CALIBRATED
 
 import octsim
 from octsim.cli.main import main
@@ -22,12 +24,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, calibrated: xr.Datas
         return calibrated if row.name == "calibration" else make(row, *given)
 
     monkeypatch.setattr(in_memory, "_make", made)
-    (tmp_path / "mine.yaml").write_text(
-        "spectrum: {samples: 250}\n"
-        "sweep: {focus: {slope: 0.58, intercept: 66 nm}}\n"
-        "calibration: {diameters: {start: 1.32 um, stop: 1.46 um, num: 8}}\n"
-        "expansion: {rest: 4}\n"
-    )
+    (tmp_path / "mine.yaml").write_text(yaml.safe_dump({**CALIBRATED, "expansion": {"rest": 4}}))
     rows = "".join(f"{i},{0.024 if i > 3 else 0.0}\n" for i in range(8))
     (tmp_path / "phases.csv").write_text(f"time,phase\n{rows}")
     return tmp_path

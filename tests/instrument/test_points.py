@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from trials import trials
 
 import octsim
 from octsim.config.load import load_config
@@ -52,7 +53,7 @@ def test_only_new_diameters_are_traced(
     assert count(scheme, sweep(301)) == (0, 301)
 
 
-@pytest.mark.parametrize("scheme", [{}, pytest.param(PATHS, marks=pytest.mark.trial)])
+@pytest.mark.parametrize("scheme", [{}, *trials(PATHS)])
 def test_another_attenuation_traces_nothing(
     scheme: dict[str, Any], count: Callable[..., tuple[int, int]]
 ) -> None:

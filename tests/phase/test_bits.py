@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from trials import trials
 
 from octsim.config.processing import Processing
 from octsim.optics.two_beams import ideal_spectra
@@ -120,22 +121,22 @@ def assert_same(found: tuple[NDArray[Any], ...], whole: tuple[NDArray[Any], ...]
 def check(function: Function, spectra: Array, diameter: Array) -> None:
     """Compare blocks of several sizes, in several places, with the whole."""
     whole = function(spectra, diameter)
-    for size in (1, 2, 5):
+    for size in (1, 2, 3, 5):
         parts = [
             function(spectra[begin : begin + size], diameter[begin : begin + size])
             for begin in range(0, diameter.size, size)
         ]
         assert_same(tuple(map(np.concatenate, zip(*parts, strict=True))), whole)
-    for by in (8, 16):
+    for by in (8, 16, 40):
         assert_same(function(shifted(spectra, by), shifted(diameter, by)), whole)
     assert_same(function(strided(spectra), diameter), whole)
     assert_same(function(np.asfortranarray(spectra), diameter), whole)
 
 
-@pytest.mark.parametrize("samples", [1000, pytest.param(333, marks=pytest.mark.trial), 37])
+@pytest.mark.parametrize("samples", [1000, 37, *trials(333)])
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_a_spectrum_has_its_own_bits_beside_whichever_others(name: str, samples: int) -> None:
-    check(FUNCTIONS[name], *_spectra(9, samples))
+    check(FUNCTIONS[name], *_spectra(11, samples))
 
 
 def test_a_gaussian_has_its_own_bits_beside_whichever_others() -> None:

@@ -59,21 +59,14 @@ def scattered(stage: str, config: octsim.Config, count: int, folder: Path) -> li
     return files
 
 
-@pytest.mark.parametrize(
-    ("stage", "grid"),
-    [
-        # of two grids whose blocks are laid out alike, one
-        pytest.param(*one, marks=pytest.mark.trial if one[1] == "schemes" else [])
-        for one in SCATTERED
-    ],
-)
+@pytest.mark.parametrize(("stage", "grid"), SCATTERED)
 def test_gathered_shares_are_the_whole_stage_to_the_bit(
     stage: str, grid: str, tmp_path: Path
 ) -> None:
     config = octsim.load_config(TINY, {"grid": GRIDS[grid]})
     write_stream(STAGES[stage](config, WHOLE), tmp_path / "whole.nc")
     whole = (tmp_path / "whole.nc").read_bytes()
-    for count in (1, 3, 40):  # more of them than blocks, too
+    for count in (1, 2, 3, 40):  # more of them than blocks, too
         files = scattered(stage, config, count, tmp_path)
         write_stream(gathered(STAGES[stage](config, WHOLE), files), tmp_path / "gathered.nc")
         assert (tmp_path / "gathered.nc").read_bytes() == whole

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from conftest import CALIBRATED, as_calibrated
+from made_runs import CALIBRATED, as_calibrated
 from missing import unexplained
 
 from octsim.config.load import load_config

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from conftest import CALIBRATED, REACHED
+from made_runs import CALIBRATED, REACHED
 from missing import unexplained
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
@@ -186,7 +186,7 @@ def test_slopes_at_a_held_focus_are_those_that_another_code_found(
     config = load_config(
         SAMPLED, {"objective": {"pupil": pupil}, "tracing": {"scheme": "fullwave"}}
     )
-    # by a hundredth of a calibration's accuracy, whose error is that of both sides of such a step
+    # a hundred times as coarse as a calibration's, whose error both sides of such a step share
     own, step, found = Instrument(by_maxwell(config, 1e-4)), 1e-4, []
     for diameter in np.linspace(1, 2, 51).tolist():
         focus = 0.581 * diameter + 0.069

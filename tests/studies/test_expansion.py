@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from conftest import CALIBRATED
+from made_runs import CALIBRATED
 from missing import unexplained
 from numpy.typing import NDArray
 

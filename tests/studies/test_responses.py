@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from conftest import CALIBRATED, as_calibrated
+from made_runs import CALIBRATED, as_calibrated
 from missing import unexplained
 from numpy.typing import NDArray
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 import yaml
 from checkout import DATASETS, TINY, Checkout, Finished
+from trials import trials
 
 KILLS = int(os.environ.get("OCTSIM_KILLS", "4"))
 COMMAND = [sys.executable, "-m", "snakemake", "--configfile", "mine.yaml"]
@@ -24,9 +25,7 @@ def start(checkout: Checkout, *arguments: str) -> subprocess.Popen[bytes]:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "seed", [0, *(pytest.param(seed, marks=pytest.mark.trial) for seed in range(1, KILLS))]
-)
+@pytest.mark.parametrize("seed", [0, *trials(*range(1, KILLS))])
 def test_a_killed_run_resumes_to_the_same_bits(
     seed: int, finished: Finished, tmp_path: Path
 ) -> None:
@@ -80,7 +79,7 @@ def test_a_results_folder_that_is_none_is_one_line(tmp_path: Path) -> None:
     assert (tmp_path / "results").read_text() == "mine"
 
 
-@pytest.mark.parametrize("damage", ["truncated", pytest.param("foreign", marks=pytest.mark.trial)])
+@pytest.mark.parametrize("damage", ["truncated", *trials("foreign")])
 def test_a_damaged_dataset_stops_what_reads_it_and_stays(
     damage: str, finished: Finished, tmp_path: Path
 ) -> None:

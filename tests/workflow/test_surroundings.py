@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 import yaml
 from checkout import GIVEN, ROOT, TINY, Checkout, Finished, merged
+from trials import trials
 
 OVERLAY = merged(TINY, GIVEN)
 SLOPE = ("--cores", "1", "results/tiny/phase_slope.nc")
@@ -31,7 +32,7 @@ def own_environment(folder: Path) -> Path:
     "name",
     [
         "it's {mine} #1",
-        *(pytest.param(one, marks=pytest.mark.trial) for one in ('%20 "$HOME" [µm]*', "new\nline")),
+        *trials('%20 "$HOME" [µm]*', "new\nline"),
     ],
 )
 def test_a_run_works_in_a_folder_of_any_name(name: str, tmp_path: Path) -> None:

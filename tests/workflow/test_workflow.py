@@ -15,6 +15,7 @@ import xarray as xr
 import yaml
 from checkout import DATASETS, GIVEN, GRID, ROOT, TINY, Checkout, Finished, counts, merged
 from edits import EDITS, EVERYTHING, edit_of
+from trials import trials
 
 from octsim.config.known_keys import known_keys
 from octsim.config.models import Config
@@ -159,9 +160,10 @@ def test_every_key_is_edited_below() -> None:
     assert leaves - ends == set(EDITS) | (keys_in(OTHERS) | keys_in(SPECTRA)) - optional
 
 
-def test_keys_of_other_targets_rerun_nothing_of_a_run(law: Checkout) -> None:
+def test_keys_of_other_targets_rerun_nothing_of_a_run(law: Checkout, given: Checkout) -> None:
     assert law.would_run(merged(TINY, OTHERS)) == set()
     assert law.would_run(merged(TINY, SPECTRA)) == set()
+    assert given.would_run(merged(TINY, GIVEN, OTHERS), *DATASETS) == set()
 
 
 # tests/datasets/test_keys.py has every key, without snakemake; these ask snakemake too
@@ -169,10 +171,7 @@ def test_keys_of_other_targets_rerun_nothing_of_a_run(law: Checkout) -> None:
     "key",
     [
         "scene.gap",
-        *(
-            pytest.param(key, marks=pytest.mark.trial)
-            for key in ("run", "tracing.accuracy", "focus_law.fraction", "processing.window")
-        ),
+        *trials("run", "tracing.accuracy", "focus_law.fraction", "processing.window"),
     ],
 )
 def test_an_edit_reruns_only_what_reads_the_key(key: str, law: Checkout, given: Checkout) -> None:
@@ -282,7 +281,7 @@ def test_a_key_that_is_not_read_is_said_once(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "name",
-    ["1e5", *(pytest.param(name, marks=pytest.mark.trial) for name in ("2024_06_01", "007"))],
+    ["1e5", *trials("2024_06_01", "007")],
 )
 def test_a_name_that_reads_as_a_number_is_taken_as_the_line_says(name: str, tmp_path: Path) -> None:
     checkout = Checkout(tmp_path)
@@ -451,20 +450,21 @@ def test_an_estimate_is_printed_first_and_a_large_run_wants_to_be_confirmed(tmp_
 def test_points_are_kept_for_other_runs_and_for_going_back(tmp_path: Path) -> None:
     checkout = Checkout(tmp_path)
     start = merged(TINY, GIVEN)
-    stages = ("--until", "focus_scan", "detections")
+    stages = ("--until", "focus_scan", "focus_sweep", "detections")
     checkout.run(start, *stages)
     shutil.rmtree(tmp_path / "results")
     shutil.rmtree(tmp_path / ".snakemake")
     for overlay, traced in (
+        (start, 0),
         (merged(start, {"run": "other", "spectrum": {"wavelength": {"min": "700 nm"}}}), 0),
         (merged(start, {"sweep": {"diameters": {"num": 17}}}), 8),
-        (merged(start, {"scene": {"gap": "6 nm"}}), 14),
+        (merged(start, {"scene": {"gap": "6 nm"}}), 41),
         (start, 0),
     ):
         checkout.run(overlay, *stages)
         found = counts(checkout, overlay["run"])
         assert sum(one["points_traced"] for one in found.values()) == traced
-        assert sum(sum(one.values()) for one in found.values()) == (22 if traced == 8 else 14)
+        assert sum(sum(one.values()) for one in found.values()) == (49 if traced == 8 else 41)
 
 
 @pytest.mark.trial
